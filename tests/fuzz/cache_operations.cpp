@@ -4,6 +4,7 @@
 
 #include <tests/fuzz/life.hpp>
 #include <tests/fuzz/palette.hpp>
+#include <tests/integration/bullet/callbacks.hpp>
 
 #include <integration/bullet/pair_cache.hpp>
 
@@ -16,43 +17,17 @@
 namespace hashphase::test {
 namespace {
 
-using Ids = std::pair<int, int>;
-
-Ids idsOf(const btBroadphasePair& pair) {
-    return std::minmax({pair.m_pProxy0->m_uniqueId, pair.m_pProxy1->m_uniqueId});
-}
-
-/// A ghost callback that knows what it was told of.
-struct GhostBook : btOverlappingPairCallback {
-    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
-        const Ids ids = std::minmax({a->m_uniqueId, b->m_uniqueId});
-        EXPECT_TRUE(alive.insert(ids).second) << "told twice";
-        return nullptr;
-    }
-    void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
-                                btDispatcher* /*dispatcher*/) override {
-        const Ids ids = std::minmax({a->m_uniqueId, b->m_uniqueId});
-        EXPECT_EQ(alive.erase(ids), 1U) << "never told of";
-        return nullptr;
-    }
-    void removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*proxy*/,
-                                               btDispatcher* /*dispatcher*/) override {
-        ADD_FAILURE() << "pairs were not removed one by one";
-    }
-    std::set<Ids> alive;
-};
-
 /// Removes every pair of which the sum of the ids is a multiple of the divisor.
 struct RemoveSome : btOverlapCallback {
     bool processOverlap(btBroadphasePair& pair) override {
-        shown.push_back(idsOf(pair));
+        shown.push_back(uidsOf(pair));
         return isRemoved(shown.back());
     }
-    [[nodiscard]] bool isRemoved(const Ids& ids) const {
+    [[nodiscard]] bool isRemoved(const Uids& ids) const {
         return divisor != 0 && (ids.first + ids.second) % divisor == 0;
     }
     int divisor = 0;
-    std::vector<Ids> shown;
+    std::vector<Uids> shown;
 };
 
 class CachePlay {
@@ -77,12 +52,13 @@ public:
         (this->*kOwn[operation.kind % kOwn.size()])(arguments);
         EXPECT_EQ(cache_.validate(), "");
         EXPECT_EQ(static_cast<std::size_t>(cache_.getNumOverlappingPairs()), expected_.size());
-        std::set<Ids> pairs;
+        std::set<Uids> pairs;
         for (int i = 0; i < cache_.getNumOverlappingPairs(); ++i) {
-            pairs.insert(idsOf(std::as_const(cache_).getOverlappingPairArrayPtr()[i]));
+            pairs.insert(uidsOf(std::as_const(cache_).getOverlappingPairArrayPtr()[i]));
         }
         EXPECT_EQ(pairs, expected_);
         EXPECT_TRUE(!hasGhosts_ || ghosts_.alive == expected_);
+        EXPECT_TRUE(ghosts_.errors.empty()) << ghosts_.errors[0];
     }
 
 private:
@@ -103,7 +79,7 @@ private:
         const std::uint32_t second = (first + 1 + number / kProxies % (kProxies - 1)) % kProxies;
         return {&proxies_[first], &proxies_[second]};
     }
-    static Ids uniqueIds(const std::pair<btBroadphaseProxy*, btBroadphaseProxy*>& proxies) {
+    static Uids uniqueIds(const std::pair<btBroadphaseProxy*, btBroadphaseProxy*>& proxies) {
         return std::minmax({proxies.first->m_uniqueId, proxies.second->m_uniqueId});
     }
     static bool groupsPair(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
@@ -119,7 +95,7 @@ private:
         btBroadphasePair* const pair =
             asks ? cache_.addOverlappingPair(a, b) : cache_.addAcceptedPair(a, b);
         // A pair that is there already, but which the filter refuses, is not returned.
-        EXPECT_TRUE(pair == nullptr || idsOf(*pair) == uniqueIds({a, b}));
+        EXPECT_TRUE(pair == nullptr || uidsOf(*pair) == uniqueIds({a, b}));
         EXPECT_TRUE(pair != nullptr || (asks && !groupsPair(*a, *b)));
         if (isIn) {
             expected_.insert(uniqueIds({a, b}));
@@ -140,7 +116,7 @@ private:
         const std::uint32_t bornCount = arguments.byte();
         story_.tell("update with ", diedCount, " that die and ", bornCount, " that are born");
         Random random = arguments.random();
-        std::set<Ids> named;
+        std::set<Uids> named;
         std::vector<BulletProxyPair> died;
         std::vector<BulletProxyPair> born;
         for (std::uint32_t i = 0; i < diedCount + bornCount; ++i) {
@@ -180,7 +156,7 @@ private:
         cache_.removeOverlappingPairsContainingProxies(proxies, nullptr);
     }
     void forget(const btBroadphaseProxy& proxy) {
-        std::erase_if(expected_, [&proxy](const Ids& ids) {
+        std::erase_if(expected_, [&proxy](const Uids& ids) {
             return ids.first == proxy.m_uniqueId || ids.second == proxy.m_uniqueId;
         });
     }
@@ -193,8 +169,8 @@ private:
         story_.tell("process all, of which go multiples of ", callback.divisor);
         cache_.processAllOverlappingPairs(&callback, nullptr, info);
         std::sort(callback.shown.begin(), callback.shown.end());
-        EXPECT_EQ(callback.shown, std::vector<Ids>(expected_.begin(), expected_.end()));
-        std::erase_if(expected_, [&callback](const Ids& ids) { return callback.isRemoved(ids); });
+        EXPECT_EQ(callback.shown, std::vector<Uids>(expected_.begin(), expected_.end()));
+        std::erase_if(expected_, [&callback](const Uids& ids) { return callback.isRemoved(ids); });
     }
 
     void sortAndLook(Arguments& arguments) { look(true, arguments); }
@@ -229,10 +205,10 @@ private:
 
     OperationLog& story_;
     std::array<btBroadphaseProxy, kProxies> proxies_;
-    GhostBook ghosts_;
+    PairJournal ghosts_;
     bool hasGhosts_ = false;
     PairCache cache_;
-    std::set<Ids> expected_;
+    std::set<Uids> expected_;
 };
 
 }  // namespace

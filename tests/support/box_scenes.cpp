@@ -12,17 +12,15 @@ namespace hashphase::test {
 
 template <class Scalar>
 BoxScene<Scalar> spreadScene(std::string name, double scale, double middle) {
-    BoxScene<Scalar> scene;
-    scene.name = std::move(name);
-    scene.count = 200;
-    scene.draw = [scale, middle](Random& random) {
-        const Vector3<double> center = random.pointIn(middle - 7 * scale, middle + 7 * scale);
-        return boxAround<Scalar>(center, random.pointIn(0.5 * scale, scale));
-    };
-    scene.nudge = [scale](Random& random, const Aabb<Scalar>& box) {
-        return shifted(random, box, 0.4 * scale);
-    };
-    return scene;
+    return {std::move(name), 200, 1,
+            [scale, middle](Random& random) {
+                const Vector3<double> center =
+                    random.pointIn(middle - 7 * scale, middle + 7 * scale);
+                return boxAround<Scalar>(center, random.pointIn(0.5 * scale, scale));
+            },
+            [scale](Random& random, const Aabb<Scalar>& box) {
+                return shifted(random, box, 0.4 * scale);
+            }};
 }
 template <class Scalar>
 Scalar hostileNumber(Random& random) {
@@ -67,67 +65,58 @@ namespace {
 // The paper's: spheres of radius 1 on flat ground of 400 x 400.
 template <class Scalar>
 BoxScene<Scalar> paperScene() {
-    BoxScene<Scalar> scene;
-    scene.name = "the paper's spheres on flat ground";
-    scene.count = 600;
-    scene.draw = [](Random& random) {
-        return boxAround<Scalar>({random.between(0, 400), random.between(0, 400), 1}, {1, 1, 1});
-    };
-    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
-        const auto byY = static_cast<Scalar>(random.between(-1, 1));
-        const Vector3<Scalar> by(static_cast<Scalar>(random.between(-1, 1)), byY, 0);
-        return Aabb<Scalar>(box.min() + by, box.max() + by);
-    };
-    return scene;
+    return {"the paper's spheres on flat ground", 600, 1,
+            [](Random& random) {
+                return boxAround<Scalar>({random.between(0, 400), random.between(0, 400), 1},
+                                         {1, 1, 1});
+            },
+            [](Random& random, const Aabb<Scalar>& box) {
+                const auto byY = static_cast<Scalar>(random.between(-1, 1));
+                const Vector3<Scalar> by(static_cast<Scalar>(random.between(-1, 1)), byY, 0);
+                return Aabb<Scalar>(box.min() + by, box.max() + by);
+            }};
 }
 
 template <class Scalar>
 BoxScene<Scalar> sizesScene() {
-    BoxScene<Scalar> scene;
-    scene.name = "sizes from 1e-3 to 1e3";
-    scene.count = 200;
-    scene.draw = [](Random& random) {
-        const double half = random.logBetween(0.5e-3, 0.5e3);
-        return boxAround<Scalar>(random.pointIn(-500, 500), Vector3<double>::Constant(half));
-    };
-    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
-        return shifted(random, box, 0.3 * static_cast<double>(box.sizes()[0]));
-    };
-    return scene;
+    return {"sizes from 1e-3 to 1e3", 200, 1,
+            [](Random& random) {
+                const double half = random.logBetween(0.5e-3, 0.5e3);
+                return boxAround<Scalar>(random.pointIn(-500, 500),
+                                         Vector3<double>::Constant(half));
+            },
+            [](Random& random, const Aabb<Scalar>& box) {
+                return shifted(random, box, 0.3 * static_cast<double>(box.sizes()[0]));
+            }};
 }
 
 // Plates without thickness, all in one plane.
 template <class Scalar>
 BoxScene<Scalar> plateScene() {
-    BoxScene<Scalar> scene;
-    scene.name = "plates in one plane";
-    scene.count = 200;
-    scene.draw = [](Random& random) {
-        const Vector3<double> half{random.between(0, 2), 0, random.between(0, 2)};
-        return boxAround<Scalar>({random.between(-20, 20), 3, random.between(-20, 20)}, half);
-    };
-    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
-        const auto byZ = static_cast<Scalar>(random.between(-0.5, 0.5));
-        const Vector3<Scalar> by(static_cast<Scalar>(random.between(-0.5, 0.5)), 0, byZ);
-        return Aabb<Scalar>(box.min() + by, box.max() + by);
-    };
-    return scene;
+    return {
+        "plates in one plane", 200, 1,
+        [](Random& random) {
+            const Vector3<double> half{random.between(0, 2), 0, random.between(0, 2)};
+            return boxAround<Scalar>({random.between(-20, 20), 3, random.between(-20, 20)}, half);
+        },
+        [](Random& random, const Aabb<Scalar>& box) {
+            const auto byZ = static_cast<Scalar>(random.between(-0.5, 0.5));
+            const Vector3<Scalar> by(static_cast<Scalar>(random.between(-0.5, 0.5)), 0, byZ);
+            return Aabb<Scalar>(box.min() + by, box.max() + by);
+        }};
 }
 
 // A few dense piles in a domain that is empty otherwise.
 template <class Scalar>
 BoxScene<Scalar> pileScene() {
-    BoxScene<Scalar> scene;
-    scene.name = "dense piles far apart";
-    scene.count = 150;
-    scene.draw = [](Random& random) {
-        const double pile = random.below(4);
-        const Vector3<double> middle(pile * 3000 - 5000, pile * 1000, 7000 - pile * 4000);
-        const Vector3<double> half = random.pointIn(0.3, 0.6);
-        return boxAround<Scalar>(middle + random.pointIn(-2, 2), half);
-    };
-    scene.nudge = [](Random& random, const Aabb<Scalar>& box) { return shifted(random, box, 0.2); };
-    return scene;
+    return {"dense piles far apart", 150, 1,
+            [](Random& random) {
+                const double pile = random.below(4);
+                const Vector3<double> middle(pile * 3000 - 5000, pile * 1000, 7000 - pile * 4000);
+                const Vector3<double> half = random.pointIn(0.3, 0.6);
+                return boxAround<Scalar>(middle + random.pointIn(-2, 2), half);
+            },
+            [](Random& random, const Aabb<Scalar>& box) { return shifted(random, box, 0.2); }};
 }
 
 // Boxes whose borders are multiples of `edge`, as rounded: they touch exactly or not at all.
@@ -138,21 +127,18 @@ BoxScene<Scalar> latticeScene(std::string name, double edge, double lowest) {
         return Aabb<Scalar>((lattice * edge).template cast<Scalar>(),
                             (top * edge).template cast<Scalar>());
     };
-    BoxScene<Scalar> scene;
-    scene.name = std::move(name);
-    scene.count = 150;
-    scene.draw = [boxAt, lowest](Random& random) {
-        const Vector3<double> steps = random.pointIn(0, 9).array().floor().matrix();
-        return boxAt((steps.array() + lowest).matrix(), random.below(3));
-    };
-    scene.nudge = [boxAt, edge](Random& random, const Aabb<Scalar>& box) {
-        Vector3<double> lattice =
-            (box.min().template cast<double>() / edge).array().round().matrix();
-        const double cells = std::round(static_cast<double>(box.sizes()[0]) / edge);
-        lattice[random.below(3)] += random.chance(0.5) ? 1 : -1;
-        return boxAt(lattice, cells);
-    };
-    return scene;
+    return {std::move(name), 150, 1,
+            [boxAt, lowest](Random& random) {
+                const Vector3<double> steps = random.pointIn(0, 9).array().floor().matrix();
+                return boxAt((steps.array() + lowest).matrix(), random.below(3));
+            },
+            [boxAt, edge](Random& random, const Aabb<Scalar>& box) {
+                Vector3<double> lattice =
+                    (box.min().template cast<double>() / edge).array().round().matrix();
+                const double cells = std::round(static_cast<double>(box.sizes()[0]) / edge);
+                lattice[random.below(3)] += random.chance(0.5) ? 1 : -1;
+                return boxAt(lattice, cells);
+            }};
 }
 
 // Unit boxes among half-spaces as Bullet's planes have them.
@@ -174,21 +160,18 @@ BoxScene<Scalar> planeScene() {
 // Points without extent, many of them at the same places.
 template <class Scalar>
 BoxScene<Scalar> pointScene() {
-    BoxScene<Scalar> scene;
-    scene.name = "points";
-    scene.count = 150;
-    scene.draw = [](Random& random) {
-        const Vector3<double> point = random.pointIn(0, 4).array().floor().matrix();
-        return boxAround<Scalar>(point, Vector3<double>::Zero());
-    };
-    scene.nudge = [](Random& random, const Aabb<Scalar>& box) {
-        Aabb<Scalar> moved = box;
-        const std::uint32_t axis = random.below(3);
-        moved.min()[axis] += 1;
-        moved.max()[axis] += 1;
-        return moved;
-    };
-    return scene;
+    return {"points", 150, 1,
+            [](Random& random) {
+                const Vector3<double> point = random.pointIn(0, 4).array().floor().matrix();
+                return boxAround<Scalar>(point, Vector3<double>::Zero());
+            },
+            [](Random& random, const Aabb<Scalar>& box) {
+                Aabb<Scalar> moved = box;
+                const std::uint32_t axis = random.below(3);
+                moved.min()[axis] += 1;
+                moved.max()[axis] += 1;
+                return moved;
+            }};
 }
 
 }  // namespace

@@ -16,8 +16,7 @@ std::atomic<std::size_t> releases{0};
 std::atomic<std::size_t> bytes{0};
 
 // How many allocations are still to work; negative where all are.
-constexpr std::int64_t kUnlimited = -1;
-std::atomic<std::int64_t> allowance{kUnlimited};
+std::atomic<std::int64_t> allowance{-1};
 
 // Says whether this allocation is to fail. (Under sanitizers, nobody asks.)
 [[maybe_unused]] bool isRefused() noexcept {
@@ -41,17 +40,8 @@ std::size_t bytesHeld() noexcept {
     return bytes;
 }
 
-FailingAllocations::FailingAllocations(std::size_t after) noexcept
-    : before_(allowance.exchange(static_cast<std::int64_t>(after))) {}
-
-FailingAllocations::~FailingAllocations() {
-    allowance = before_;
-}
-
-WorkingAllocations::WorkingAllocations() noexcept : before_(allowance.exchange(kUnlimited)) {}
-
-WorkingAllocations::~WorkingAllocations() {
-    allowance = before_;
+std::int64_t FailingAllocations::allow(std::int64_t count) noexcept {
+    return allowance.exchange(count);
 }
 
 void* countedAllocate(std::size_t size) {

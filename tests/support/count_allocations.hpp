@@ -3,6 +3,7 @@
 
 // Counts every `new` of a program that count_allocations.cpp is a part of, and makes it fail on demand.
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 
@@ -28,25 +29,23 @@ inline constexpr bool kCountsAllocations = true;
 /// std::bad_alloc. Does nothing where none are counted.
 class FailingAllocations {
 public:
-    explicit FailingAllocations(std::size_t after) noexcept;
-    ~FailingAllocations();
+    template <std::integral Count>
+    explicit FailingAllocations(Count after) noexcept
+        : before_(allow(static_cast<std::int64_t>(after))) {}
+    ~FailingAllocations() { allow(before_); }
     FailingAllocations(const FailingAllocations&) = delete;
     FailingAllocations& operator=(const FailingAllocations&) = delete;
 
 private:
+    /// So many are to work, all where that is negative; returns how many were.
+    static std::int64_t allow(std::int64_t count) noexcept;
+
     std::int64_t before_;
 };
 
 /// While it lives, `new` works, within the life of FailingAllocations too: for a test's own lists.
-class WorkingAllocations {
-public:
-    WorkingAllocations() noexcept;
-    ~WorkingAllocations();
-    WorkingAllocations(const WorkingAllocations&) = delete;
-    WorkingAllocations& operator=(const WorkingAllocations&) = delete;
-
-private:
-    std::int64_t before_;
+struct WorkingAllocations : private FailingAllocations {
+    WorkingAllocations() noexcept : FailingAllocations(-1) {}
 };
 
 /// malloc(), counted, for libraries that take a function to allocate by.

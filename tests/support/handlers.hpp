@@ -13,37 +13,39 @@
 
 namespace hashphase::test {
 
+/// The handler is this one while it lives.
+template <auto set, auto handler>
+class Handled {
+public:
+    Handled() : previous_(set(handler)) {}
+    ~Handled() { set(previous_); }
+    Handled(const Handled&) = delete;
+    Handled& operator=(const Handled&) = delete;
+
+private:
+    decltype(set(handler)) previous_;
+};
+
 /// Collects messages while it lives, in place of stderr. One at a time.
 class CaughtMessages {
 public:
-    CaughtMessages() : previous_(setMessageHandler(&note)) {
-        const std::lock_guard lock(mutex());
-        list().clear();
+    CaughtMessages() {
+        const std::lock_guard lock(mutex_);
+        list_.clear();
     }
-    ~CaughtMessages() { setMessageHandler(previous_); }
-    CaughtMessages(const CaughtMessages&) = delete;
-    CaughtMessages& operator=(const CaughtMessages&) = delete;
-
     [[nodiscard]] std::vector<std::string> all() const {
-        const std::lock_guard lock(mutex());
-        return list();
+        const std::lock_guard lock(mutex_);
+        return list_;
     }
 
 private:
     static void note(const char* message) {
-        const std::lock_guard lock(mutex());
-        list().emplace_back(message);
+        const std::lock_guard lock(mutex_);
+        list_.emplace_back(message);
     }
-    static std::vector<std::string>& list() {
-        static std::vector<std::string> messages;
-        return messages;
-    }
-    static std::mutex& mutex() {
-        static std::mutex mutex;
-        return mutex;
-    }
-
-    MessageHandler previous_;
+    static inline std::vector<std::string> list_;
+    static inline std::mutex mutex_;
+    Handled<&setMessageHandler, &note> handled_;
 };
 
 /// What a broken assertion throws while ThrowingAsserts lives.
@@ -51,31 +53,18 @@ struct BrokenAssert : std::logic_error {
     using std::logic_error::logic_error;
 };
 
+[[noreturn]] inline void throwBrokenAssert(const char* /*condition*/, const char* sentence,
+                                           const char* /*file*/, int /*line*/) {
+    throw BrokenAssert(sentence);
+}
+
 /// Makes broken assertions throw BrokenAssert with the sentence.
-class ThrowingAsserts {
-public:
-    ThrowingAsserts() : previous_(setAssertHandler(&throwIt)) {}
-    ~ThrowingAsserts() { setAssertHandler(previous_); }
-    ThrowingAsserts(const ThrowingAsserts&) = delete;
-    ThrowingAsserts& operator=(const ThrowingAsserts&) = delete;
-
-private:
-    [[noreturn]] static void throwIt(const char* /*condition*/, const char* sentence,
-                                     const char* /*file*/, int /*line*/) {
-        throw BrokenAssert(sentence);
-    }
-
-    AssertHandler previous_;
-};
+using ThrowingAsserts = Handled<&setAssertHandler, &throwBrokenAssert>;
 
 /// Counts broken assertions while it lives, and goes on, as without assertions.
 class CaughtAsserts {
 public:
-    CaughtAsserts() : previous_(setAssertHandler(&note)) { count_ = 0; }
-    ~CaughtAsserts() { setAssertHandler(previous_); }
-    CaughtAsserts(const CaughtAsserts&) = delete;
-    CaughtAsserts& operator=(const CaughtAsserts&) = delete;
-
+    CaughtAsserts() { count_ = 0; }
     [[nodiscard]] int count() const { return count_; }
 
 private:
@@ -84,8 +73,7 @@ private:
         ++count_;
     }
     static inline std::atomic<int> count_ = 0;
-
-    AssertHandler previous_;
+    Handled<&setAssertHandler, &note> handled_;
 };
 
 }  // namespace hashphase::test

@@ -54,11 +54,11 @@ public:
         of_[id.index] = colour;
     }
     [[nodiscard]] bool accept(ProxyId a, ProxyId b) const { return coloursPair(of(a), of(b)); }
-
-private:
     [[nodiscard]] std::uint32_t of(ProxyId id) const {
         return id.index < of_.size() ? of_[id.index] : 0;
     }
+
+private:
     std::vector<std::uint32_t> of_;  // by index of proxy
 };
 

@@ -52,11 +52,11 @@ template <class Scalar>
 void findNearestByBruteForce(std::span<const Placed<Scalar>> proxies, const Vector3<Scalar>& point,
                              std::size_t count, Scalar maximalDistance,
                              std::vector<KeyedProxy<Scalar>>& nearest,
-                             ProxyFilter filter = acceptAll) {
+                             ProxyFilter filter = acceptAll, ProxyId self = {}) {
     const PositionRegion<Scalar> ball(point, maximalDistance);
     nearest.clear();
     for (const Placed<Scalar>& proxy : proxies) {
-        if (ball.key(proxy.box) >= 0 && filter(proxy.id)) {
+        if (ball.key(proxy.box) >= 0 && proxy.id != self && filter(proxy.id)) {
             nearest.push_back({ball.key(proxy.box), proxy.id});
         }
     }

@@ -27,7 +27,8 @@ struct ScriptRates {
 ///   ProxyId add(const Aabb<Scalar>&, Mobility);
 ///   void move(ProxyId, const Aabb<Scalar>&);
 ///   void remove(ProxyId);
-///   void refilter(ProxyId);   the colour has changed
+///   void refilter(ProxyId);   the colour has changed; or
+///   void paint(ProxyId, std::uint32_t colour);   that is its colour now, or as it was created
 /// All proxies rest at the end of every period of kPeriod frames, so long that whatever waits for
 /// them to be quiet will happen.
 template <class Scalar>
@@ -103,6 +104,9 @@ private:
         proxies_.push_back(proxy);
         plans_.push_back(plan);
         colours_.set(proxy.id, proxy.colour);
+        if constexpr (requires { world.paint(proxy.id, proxy.colour); }) {
+            world.paint(proxy.id, proxy.colour);
+        }
     }
 
     template <class World>
@@ -158,7 +162,11 @@ private:
             if (rates_.recolour > 0 && random_.chance(rates_.recolour * share)) {
                 proxy.colour = random_.below(3);
                 colours_.set(proxy.id, proxy.colour);
-                world.refilter(proxy.id);
+                if constexpr (requires { world.paint(proxy.id, proxy.colour); }) {
+                    world.paint(proxy.id, proxy.colour);
+                } else {
+                    world.refilter(proxy.id);
+                }
             }
         }
     }

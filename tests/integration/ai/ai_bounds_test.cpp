@@ -3,6 +3,7 @@
 // The most that a question of an agent may cost, however far it reaches: about one test for each proxy.
 
 #include <broadphase/radius_search.hpp>
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>
@@ -109,6 +110,29 @@ TYPED_TEST(AiBounds, OfSightIsOnePassAndOneForEachTarget) {
     std::vector<std::uint32_t> counts(search.size());
     EXPECT_LE(search.count(counts).boxesTested, 10U * 16);
     EXPECT_EQ(counts, std::vector<std::uint32_t>(10, 9));
+}
+
+TYPED_TEST(AiBounds, OfTheNearestIsAFewCellsAndNeverTheGridOverAndOver) {
+    Grid<TypeParam> many;
+    Random random(0x5eed0913);
+    constexpr std::uint64_t kMany = 20000;
+    for (std::uint64_t i = 0; i < kMany; ++i) {
+        static_cast<void>(many.add(boxAround<TypeParam>(random.pointIn(0, 100), {1, 1, 1})));
+    }
+    many.update();
+    std::vector<KeyedProxy<TypeParam>> nearest;
+    for (int i = 0; i < 100; ++i) {
+        const auto point = Vector3<TypeParam>(random.pointIn(0, 100).cast<TypeParam>());
+        QueryCost cost = findNearest(many, point, 4, this->kInfinity, nearest);
+        EXPECT_LT(cost.boxesTested, kMany / 20);
+        const auto none = [](ProxyId) { return false; };
+        cost = findNearest(many, point, 4, this->kInfinity, nearest, none);
+        EXPECT_LT(cost.boxesTested, 4 * kMany);
+        const Vector3<TypeParam> away = point * TypeParam(1e12);
+        cost = findNearest(many, away, 4, this->kInfinity, nearest);
+        EXPECT_LT(cost.boxesTested, 4 * kMany);
+        EXPECT_EQ(nearest.size(), 4U);
+    }
 }
 
 }  // namespace

@@ -102,7 +102,9 @@ private:
     }
 
     void askNearest(const Grid<Scalar>& grid, Proxies proxies, RegionMaker<Scalar>& make) {
-        const Vector3<Scalar> point = make.point();
+        // Now and then from so far away that all are last.
+        const Vector3<Scalar> point = make.point() * Scalar(random_.chance(0.1) ? 1e10 : 1);
+        const ProxyId self = anyOf(proxies).id;
         const auto count = static_cast<std::size_t>(random_.chance(0.1) ? 1000 : random_.below(12));
         const Scalar most = random_.chance(0.3)   ? std::numeric_limits<Scalar>::infinity()
                             : random_.chance(0.1) ? hostileNumber<Scalar>(random_)
@@ -110,8 +112,8 @@ private:
         const ProxyFilter filter = random_.chance(0.5) ? ProxyFilter(acceptAll) : isEven;
         std::vector<KeyedProxy<Scalar>> nearest;
         std::vector<KeyedProxy<Scalar>> expected;
-        findNearest(grid, point, count, most, nearest, filter);
-        findNearestByBruteForce(proxies, point, count, most, expected, filter);
+        findNearest(grid, point, count, most, nearest, filter, self);
+        findNearestByBruteForce(proxies, point, count, most, expected, filter, self);
         ASSERT_EQ(nearest, expected) << count << " within " << most << " of " << point.transpose();
         compared_["nearest"] += nearest.size();
         compared_["nearest that are cut off"] += nearest.size() == count ? 1 : 0;
@@ -288,7 +290,7 @@ private:
         return after;
     }
 
-    // All change, or some do as if all had looked.
+    // All change, or those whom a filter names, or some do as if all had looked.
     void askColours(const Grid<Scalar>& grid, Proxies proxies) {
         const Vector3<Scalar> way = positionOf(proxies[0].box) - positionOf(proxies[1].box);
         const Scalar radius = way.cwiseAbs().maxCoeff() / 2;
@@ -298,8 +300,13 @@ private:
         Colours expected = all;
         Colours onThreads = colours_;
         if (frame_ % 2 == 0) {
-            rarest_.update(grid, radius, most, colours_, doesCount);
-            rarest_.update(grid, radius, most, onThreads, doesCount, acceptAll, threads_);
+            const ProxyFilter changes = frame_ % 4 == 0 ? ProxyFilter(acceptAll) : isEven;
+            for (std::size_t i = 0; i < expected.size(); ++i) {
+                const bool isKept = !changes(ProxyId{static_cast<std::uint32_t>(i), 1});
+                expected[i] = isKept ? before[i] : expected[i];
+            }
+            rarest_.update(grid, radius, most, colours_, doesCount, changes);
+            rarest_.update(grid, radius, most, onThreads, doesCount, changes, threads_);
         } else {
             std::vector<ProxyId> some;
             expected = before;

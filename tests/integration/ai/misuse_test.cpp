@@ -3,6 +3,7 @@
 // What callbacks of the AI's clients may not do to these, and what callers may not.
 
 #include <integration/ai/radar.hpp>
+#include <integration/ai/rarest_colour.hpp>
 #include <integration/ai/sight.hpp>
 #include <integration/ai/zones.hpp>
 #include <tests/support/box_scenes.hpp>
@@ -66,6 +67,14 @@ TEST_F(AiMisuse, OfARadarByItsGroupsOrWithTooManyCountsIsAsserted) {
     window.columns = window.rows = 1U << 31;
     window.layers = 4;
     EXPECT_THROW(radar.scan(grid_, window, 1, nobody), BrokenAssert);
+}
+
+TEST_F(AiMisuse, OfTheRarestColourWithoutAColourForEachAgentOrOfTooManyIsAsserted) {
+    RarestColour<float> rarest;
+    std::vector<std::uint32_t> colours(3);
+    EXPECT_THROW(rarest.update(grid_, 1, 0, colours), BrokenAssert);
+    EXPECT_THROW(rarest.update(grid_, 1, 33, colours), BrokenAssert);
+    EXPECT_THROW(rarest.update(grid_, 1, 2, {}), BrokenAssert);
 }
 
 TEST_F(AiMisuse, OfSightByItsFilterOrForWhoDidNotLookIsAsserted) {

@@ -1,76 +1,79 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Boxes of our broadphase alone, and the judge of their pairs, who looks at every two of them.
+// Boxes of a broadphase alone, and the judge of their pairs, who looks at every two of them.
 
-#include <tests/integration/bullet/pair_journal.hpp>
-#include <tests/integration/bullet/player.hpp>
+#include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/callbacks.hpp>
 #include <tests/support/count_allocations.hpp>
-
-#include <integration/bullet/pair_cache.hpp>
-#include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 #include <vector>
 
 namespace hashphase::test {
 
-[[nodiscard]] inline Box boxOf(const btBroadphaseProxy& proxy) {
-    return {proxy.m_aabbMin, proxy.m_aabbMax};
-}
-
-/// Of 1 m, along x.
-[[nodiscard]] inline Box cubeAt(btScalar x) {
-    return {{x, 0, 0}, {x + 1, 1, 1}};
-}
-
-/// A pair cache of ours, a broadphase over it, and those of its proxies that are alive.
-struct Boxes {
-    explicit Boxes(const SpatialHashConfig& config = {}, PairOrder order = PairOrder::arrival)
-        : cache(order), broadphase(&cache, config) {}
-    ~Boxes() {
-        cache.setOverlapFilterCallback(nullptr);
-        cache.setInternalGhostPairCallback(nullptr);
-        for (btBroadphaseProxy* const proxy : proxies) {
-            broadphase.destroyProxy(proxy, nullptr);
-        }
+/// A broadphase, the cache that it was given if any, and those of its proxies that are alive.
+struct AnyBoxes {
+    explicit AnyBoxes(std::unique_ptr<btBroadphaseInterface> broadphase,
+                      std::unique_ptr<btOverlappingPairCache> cache = nullptr)
+        : given(std::move(cache)), over(std::move(broadphase)) {}
+    /// Ours over a cache, or over its own.
+    explicit AnyBoxes(std::unique_ptr<btOverlappingPairCache> cache,
+                      const SpatialHashConfig& config = {})
+        : given(std::move(cache)), over(hashOver(given.get(), config)) {}
+    ~AnyBoxes() {
+        pairCache().setOverlapFilterCallback(nullptr);
+        pairCache().setInternalGhostPairCallback(nullptr);
+        destroyAll();  // btDbvtBroadphase leaks what is left to it
     }
-    Boxes(const Boxes&) = delete;
-    Boxes& operator=(const Boxes&) = delete;
+    AnyBoxes(const AnyBoxes&) = delete;
+    AnyBoxes& operator=(const AnyBoxes&) = delete;
 
     btBroadphaseProxy* create(const Box& box, int group = btBroadphaseProxy::DefaultFilter,
                               int mask = btBroadphaseProxy::AllFilter, void* client = nullptr) {
-        btBroadphaseProxy* const proxy = broadphase.createProxy(
-            box.min, box.max, BOX_SHAPE_PROXYTYPE, client, group, mask, nullptr);
+        btBroadphaseProxy* const proxy =
+            over->createProxy(box.min, box.max, BOX_SHAPE_PROXYTYPE, client, group, mask, nullptr);
         const WorkingAllocations working;
         proxies.push_back(proxy);
         return proxy;
     }
     void set(btBroadphaseProxy* proxy, const Box& box) {
-        broadphase.setAabb(proxy, box.min, box.max, nullptr);
+        over->setAabb(proxy, box.min, box.max, nullptr);
+    }
+    void move(btBroadphaseProxy* proxy, const btVector3& by) {
+        set(proxy, {proxy->m_aabbMin + by, proxy->m_aabbMax + by});
     }
     void destroy(btBroadphaseProxy* proxy) {
-        broadphase.destroyProxy(proxy, nullptr);
+        over->destroyProxy(proxy, nullptr);
         std::erase(proxies, proxy);
+    }
+    void destroyAll() {
+        while (!proxies.empty()) {
+            destroy(proxies.back());
+        }
     }
     void step(int count = 1) {
         for (int i = 0; i < count; ++i) {
-            broadphase.calculateOverlappingPairs(nullptr);
+            over->calculateOverlappingPairs(nullptr);
         }
     }
 
-    [[nodiscard]] int pairCount() { return cache.getNumOverlappingPairs(); }
-    [[nodiscard]] bool isPair(std::size_t i, std::size_t j) {
-        return cache.findPair(proxies[i], proxies[j]) != nullptr;
+    [[nodiscard]] btOverlappingPairCache& pairCache() const {
+        return *over->getOverlappingPairCache();
     }
-    [[nodiscard]] std::size_t memoryBytes() const {
-        return broadphase.memoryBytes() + cache.memoryBytes();
+    [[nodiscard]] SpatialHashBroadphase& hash() const {
+        return dynamic_cast<SpatialHashBroadphase&>(*over);
+    }
+    [[nodiscard]] int pairCount() const { return pairCache().getNumOverlappingPairs(); }
+    [[nodiscard]] bool isPair(std::size_t i, std::size_t j) const {
+        return pairCache().findPair(proxies[i], proxies[j]) != nullptr;
     }
     /// In the order of the array.
-    [[nodiscard]] std::vector<Uids> list() { return uidList(cache); }
+    [[nodiscard]] std::vector<Uids> list() const { return uidList(pairCache()); }
 
     /// All that overlap and may pair by group and mask, sorted.
     [[nodiscard]] std::vector<Uids> overlaps() const {
@@ -78,8 +81,7 @@ struct Boxes {
         for (const btBroadphaseProxy* a : proxies) {
             for (const btBroadphaseProxy* b : proxies) {
                 if (a->m_uniqueId < b->m_uniqueId && overlap(boxOf(*a), boxOf(*b)) &&
-                    groupsCollide(a->m_collisionFilterGroup, a->m_collisionFilterMask,
-                                  b->m_collisionFilterGroup, b->m_collisionFilterMask)) {
+                    groupsCollide(*a, *b)) {
                     pairs.push_back(uidsOf(*a, *b));
                 }
             }
@@ -87,6 +89,21 @@ struct Boxes {
         std::sort(pairs.begin(), pairs.end());
         return pairs;
     }
+
+    std::unique_ptr<btOverlappingPairCache> given;
+    std::unique_ptr<btBroadphaseInterface> over;
+    std::vector<btBroadphaseProxy*> proxies;  // in the order of creation
+};
+
+/// Our broadphase over a pair cache of ours.
+struct Boxes : AnyBoxes {
+    explicit Boxes(const SpatialHashConfig& config = {}, PairOrder order = PairOrder::arrival)
+        : AnyBoxes(std::make_unique<PairCache>(order), config) {}
+
+    [[nodiscard]] std::size_t memoryBytes() const {
+        return broadphase.memoryBytes() + cache.memoryBytes();
+    }
+    [[nodiscard]] const PairCost& cost() const { return broadphase.lastCost(); }
 
     /// After a step the pairs are those that overlap, and all accounts agree.
     void check() {
@@ -99,9 +116,8 @@ struct Boxes {
         EXPECT_EQ(pairs, overlaps());
     }
 
-    PairCache cache;
-    SpatialHashBroadphase broadphase;
-    std::vector<btBroadphaseProxy*> proxies;  // in the order of creation
+    PairCache& cache = dynamic_cast<PairCache&>(*given);
+    SpatialHashBroadphase& broadphase = hash();
 };
 
 }  // namespace hashphase::test

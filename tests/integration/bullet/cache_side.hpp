@@ -3,7 +3,7 @@
 
 // A pair cache by itself, with proxies and a dispatcher, and what it has freed and told.
 
-#include <tests/integration/bullet/pair_journal.hpp>
+#include <tests/integration/bullet/callbacks.hpp>
 
 #include <integration/bullet/pair_cache.hpp>
 
@@ -108,7 +108,7 @@ struct CacheSide {
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher{&configuration};
     std::vector<Uids> freed;
-    ToldPairs ghosts;  // to be set as the callback
+    PairJournal ghosts;  // to be set as the callback
     std::array<btBroadphaseProxy, kProxies> proxies;
     PairCache cache;
 };

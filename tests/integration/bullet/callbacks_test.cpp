@@ -3,7 +3,7 @@
 // Callbacks that create, move and destroy, which is where other broadphases crash.
 
 #include <tests/integration/bullet/boxes.hpp>
-#include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/queries.hpp>
 #include <tests/support/handlers.hpp>
 
 #include <gtest/gtest.h>
@@ -55,10 +55,8 @@ struct Room : Boxes {
     /// Both expect that whatever is there is found once, unless the callback moves or destroys it, and
     /// return how many others are.
     std::size_t castRay(ReportRay& callback) {
-        callback.m_rayDirectionInverse = btVector3(BT_LARGE_FLOAT, BT_LARGE_FLOAT, 1);
-        callback.m_signs[0] = callback.m_signs[1] = callback.m_signs[2] = 0;
-        callback.m_lambda_max = 20;
         const Box way{{0, 0, -10}, {0, 0, 10}};
+        setFields(callback, {way.min, way.max});
         return expectTheOthersOnce(way, callback.found,
                                    [&] { broadphase.rayTest(way.min, way.max, callback); });
     }
@@ -170,7 +168,7 @@ TEST(Callbacks, OfQueriesMayAskAfterManyChanges) {
 // Now and then one of two that have begun to overlap goes, or another comes.
 TEST(Callbacks, OfGhostsMayDestroyAndCreate) {
     Room room(200);
-    ToldPairs ghosts;
+    PairJournal ghosts;
     ghosts.onBirth = [&](btBroadphaseProxy* a, btBroadphaseProxy* b) {
         EXPECT_TRUE(a->m_clientObject == &room && b->m_clientObject == &room);
         if (!room.isAlive(a) || !room.isAlive(b)) {
@@ -210,9 +208,7 @@ TEST(Callbacks, OfProcessAllOverlappingPairsMayDestroyEitherProxy) {
     room.cache.processAllOverlappingPairs(&destroying, nullptr);
     EXPECT_GT(destroying.shown.size(), 20U);
     EXPECT_EQ(room.broadphase.grid().validate(), "");
-    while (!room.proxies.empty()) {
-        room.remove(room.proxies.back());
-    }
+    room.destroyAll();
     room.check();
 }
 
@@ -283,7 +279,7 @@ TEST(Callbacks, OfTheFilterMustChangeNothing) {
 TEST(Callbacks, MustNotCalculateOverlappingPairs) {
     Room room(50);
     const ThrowingAsserts throwing;
-    ToldPairs ghosts;
+    PairJournal ghosts;
     ghosts.onBirth = [&](btBroadphaseProxy*, btBroadphaseProxy*) { room.step(); };
     ReportBox box([&](btBroadphaseProxy*) { room.step(); });
     EXPECT_THROW(room.lookAround(box), BrokenAssert);

@@ -4,10 +4,8 @@
 // added again, here shapeChanged(). Pairs that keep the algorithm of the former shape read a sphere as a
 // compound, say.
 
-#include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/boxes.hpp>
 #include <tests/integration/bullet/dynamics.hpp>
-
-#include <integration/bullet/pair_cache.hpp>
 
 #include <gtest/gtest.h>
 
@@ -91,12 +89,12 @@ TEST_P(ChangedShapes, RestAsUnderBtDbvtBroadphaseWhateverIsCalled) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Caches, ChangedShapes, testing::ValuesIn(cacheKinds()),
+INSTANTIATE_TEST_SUITE_P(Caches, ChangedShapes, testing::ValuesIn(kCacheKinds),
                          [](const auto& kind) { return kind.param.name; });
 
 // A ghost's cache has algorithms of its own, which characters make in each step.
 TEST(ChangedShapesBesideGhosts, LeaveNoAlgorithmInTheirCaches) {
-    for (const CacheKind& kind : {cacheKinds()[0], cacheKinds()[3]}) {
+    for (const CacheKind& kind : {kCacheKinds[0], kCacheKinds[3]}) {
         const std::unique_ptr<btOverlappingPairCache> cache = kind.make();
         btCapsuleShape capsule(1, 1);
         BodyOnFloor scene(hashOver(cache.get()));
@@ -127,22 +125,20 @@ TEST(ChangedShapesBesideGhosts, LeaveNoAlgorithmInTheirCaches) {
 
 TEST(ChangedShapesInACache, KeepTheirPairsAndEndAndBeginForGhosts) {
     PairJournal journal;
-    Player player = hashPlayer(20);
-    player.cache().setInternalGhostPairCallback(&journal);
-    for (int object = 0; object < 20; ++object) {
-        player.create(object, boxAround({btScalar(object), 0, 0}, {1, 1, 1}));
+    Boxes boxes;
+    boxes.cache.setInternalGhostPairCallback(&journal);
+    for (int i = 0; i < 20; ++i) {
+        boxes.create(boxAround({btScalar(i), 0, 0}, {1, 1, 1}));
     }
-    const ObjectPairs before = player.pairsAfterStep();
+    boxes.check();
     journal.takeTouched();
-    const auto& cache = dynamic_cast<const PairCache&>(player.cache());
-    const std::uint64_t visited = cache.pairsVisited();
-    hashOf(player).shapeChanged(player.proxy(7), nullptr);
-    EXPECT_EQ(cache.pairsVisited() - visited, 4U) << "as many as the proxy has pairs";
-    EXPECT_EQ(player.pairs(), before);
+    const std::uint64_t visited = boxes.cache.pairsVisited();
+    boxes.broadphase.shapeChanged(boxes.proxies[7], nullptr);
+    EXPECT_EQ(boxes.cache.pairsVisited() - visited, 4U) << "as many as the proxy has pairs";
     EXPECT_EQ(journal.takeTouched().size(), 4U);
-    EXPECT_EQ(journal.errors(), std::vector<std::string>{});
-    EXPECT_EQ(journal.alive(), uidPairs(player.cache()));
-    EXPECT_EQ(hashOf(player).validate(), "");
+    EXPECT_EQ(journal.errors, std::vector<std::string>{});
+    EXPECT_EQ(journal.alive, uidPairs(boxes.cache));
+    boxes.check();
 }
 
 }  // namespace

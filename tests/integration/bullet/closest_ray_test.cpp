@@ -5,13 +5,13 @@
 
 #include <tests/integration/bullet/dynamics.hpp>
 #include <tests/integration/bullet/queries.hpp>
+#include <tests/support/threaded_for.hpp>
 
 #include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
 #include <gtest/gtest.h>
 
 #include <deque>
 #include <memory>
-#include <thread>
 #include <vector>
 
 namespace hashphase::test {
@@ -173,15 +173,6 @@ TEST(ClosestRay, ReportsAllHitsToACallbackThatWantsAll) {
 
 // --- Batches -------------------------------------------------------------------------------------
 
-void forOnTwoThreads(std::size_t count, std::size_t grain, LoopBody body) {
-    const std::size_t half = count / 2 / grain * grain;
-    std::thread second([&] { body(half, count); });
-    if (half > 0) {
-        body(0, half);
-    }
-    second.join();
-}
-
 /// The proxies here are those of collision objects.
 struct CollectIds : CollectRay {
     using CollectRay::CollectRay;
@@ -193,7 +184,8 @@ struct CollectIds : CollectRay {
 
 TEST(RayBatches, CallEachCallbackAsARayAloneDoes) {
     ShapeWorld scene(1500, 24);
-    for (const ParallelFor parallelFor : {ParallelFor(serialFor), ParallelFor(forOnTwoThreads)}) {
+    ThreadedFor threads(2, 0x5eed0903);
+    for (const ParallelFor parallelFor : {ParallelFor(serialFor), ParallelFor(threads)}) {
         for (int i = 0; i < 500; ++i) {
             scene.jump(2 + i);  // so many that the batch files them
         }

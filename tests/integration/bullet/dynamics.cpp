@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstring>
-#include <ostream>
 #include <set>
 
 namespace hashphase::test {
@@ -15,9 +14,6 @@ DynamicsWorld::DynamicsWorld(std::unique_ptr<btBroadphaseInterface> broadphase,
     : cache_(std::move(cache)), broadphase_(std::move(broadphase)) {}
 
 DynamicsWorld::~DynamicsWorld() {
-    for (const auto& link : links_) {
-        world_.removeConstraint(link.get());
-    }
     for (int i = world_.getNumCollisionObjects(); i-- > 0;) {
         world_.removeCollisionObject(world_.getCollisionObjectArray()[i]);
     }
@@ -69,12 +65,6 @@ void DynamicsWorld::takeOut(int number) {
     world_.removeRigidBody(&body(number));
 }
 
-void DynamicsWorld::link(int a, int b, const btVector3& pointInA, const btVector3& pointInB) {
-    links_.push_back(
-        std::make_unique<btPoint2PointConstraint>(body(a), body(b), pointInA, pointInB));
-    world_.addConstraint(links_.back().get(), true);
-}
-
 int DynamicsWorld::sleepingCount() const {
     int count = 0;
     for (const auto& body : bodies_) {
@@ -90,8 +80,7 @@ void DynamicsWorld::expectExactPairs() {
         for (int k = 0; k < i; ++k) {
             btBroadphaseProxy* const a = objects[i]->getBroadphaseHandle();
             btBroadphaseProxy* const b = objects[k]->getBroadphaseHandle();
-            if (overlap({a->m_aabbMin, a->m_aabbMax}, {b->m_aabbMin, b->m_aabbMax}) &&
-                cache().needsBroadphaseCollision(a, b)) {
+            if (overlap(boxOf(*a), boxOf(*b)) && cache().needsBroadphaseCollision(a, b)) {
                 expected.insert(uidsOf(*a, *b));
             }
         }
@@ -136,19 +125,11 @@ btTransform somewhereAbove(BulletRandom& random, btScalar low, btScalar high) {
     return placeAt({x, random.uniform(low, high), z}, turn);
 }
 
-void addPlane(DynamicsWorld& world) {
-    world.add(world.keep(std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0))), 0,
-              placeAt({0, 0, 0}));
-}
-
-void addFloor(DynamicsWorld& world) {
-    world.addBox({40, 1, 40}, 0, {0, -1, 0});
-}
-
-constexpr int kPileBodies = 180;
+}  // namespace
 
 void buildPile(DynamicsWorld& world) {
-    addPlane(world);
+    world.add(world.keep(std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0))), 0,
+              placeAt({0, 0, 0}));
     BulletRandom random(1);
     const auto half = btScalar(0.4);
     const std::array<btCollisionShape*, 4> shapes{
@@ -157,94 +138,20 @@ void buildPile(DynamicsWorld& world) {
         world.keep(std::make_unique<btCapsuleShape>(btScalar(0.3), half)),
         world.keep(std::make_unique<btCylinderShape>(btVector3(half, half, half))),
     };
-    for (int i = 0; i < kPileBodies; ++i) {
+    for (int i = 0; i < 180; ++i) {
         const btScalar height = 1 + btScalar(i) * btScalar(0.08);
         world.add(shapes[static_cast<std::size_t>(i) % shapes.size()], 1,
                   somewhereAbove(random, height, height + 1));
     }
 }
 
-void buildStack(DynamicsWorld& world) {
-    addFloor(world);
-    btCollisionShape* const brick = world.keep(
-        std::make_unique<btBoxShape>(btVector3(btScalar(0.5), btScalar(0.25), btScalar(0.25))));
-    constexpr int kRows = 14;
-    for (int row = 0; row < kRows; ++row) {
-        for (int i = 0; i < kRows - row; ++i) {
-            const btScalar x = btScalar(i) + btScalar(row) / 2;
-            world.add(brick, 1, placeAt({x, btScalar(0.25) + btScalar(row) / 2, 0}));
-        }
-    }
-}
-
-constexpr int kCompounds = 90;
-
-void buildCompounds(DynamicsWorld& world) {
-    addFloor(world);
-    BulletRandom random(2);
-    btCollisionShape* const bar = world.keep(
-        std::make_unique<btBoxShape>(btVector3(btScalar(0.7), btScalar(0.15), btScalar(0.15))));
-    btCollisionShape* const ball = world.keep(std::make_unique<btSphereShape>(btScalar(0.3)));
-    btCompoundShape* const dumbbell = world.keep(std::make_unique<btCompoundShape>());
-    dumbbell->addChildShape(placeAt({0, 0, 0}), bar);
-    dumbbell->addChildShape(placeAt({btScalar(0.7), 0, 0}), ball);
-    dumbbell->addChildShape(placeAt({btScalar(-0.7), 0, 0}), ball);
-    btCompoundShape* const cross = world.keep(std::make_unique<btCompoundShape>());
-    cross->addChildShape(placeAt({0, 0, 0}), bar);
-    cross->addChildShape(placeAt({0, 0, 0}, btQuaternion({0, 1, 0}, SIMD_HALF_PI)), bar);
-    for (int i = 0; i < kCompounds; ++i) {
-        const btScalar height = 1 + btScalar(i) * btScalar(0.12);
-        world.add(i % 2 == 0 ? dumbbell : cross, 1, somewhereAbove(random, height, height + 1));
-    }
-}
-
-/// Chains of ten links; the first of each is fixed in the air, or as free as the others.
-void buildChains(DynamicsWorld& world, bool hang) {
-    btCollisionShape* const shape =
-        world.keep(std::make_unique<btCapsuleShapeX>(btScalar(0.12), btScalar(0.3)));
-    const btVector3 end(btScalar(0.3), 0, 0);
-    for (int chain = 0; chain < 16; ++chain) {
-        const btVector3 start(btScalar(chain % 4) * btScalar(0.7),
-                              4 + btScalar(chain / 4) * btScalar(0.5),
-                              btScalar(chain % 4) * btScalar(0.35));
-        int previous = -1;
-        for (int i = 0; i < 10; ++i) {
-            const btScalar mass = hang && i == 0 ? 0 : 1;
-            const int link = world.add(
-                shape, mass, placeAt(start + btVector3(btScalar(i) * btScalar(0.6), 0, 0)));
-            if (previous >= 0) {
-                world.link(previous, link, end, -end);
-            }
-            previous = link;
-        }
-    }
-}
-
-void buildHangingChains(DynamicsWorld& world) {
-    addFloor(world);
-    buildChains(world, true);
-}
-
-void buildChainsOnAPlane(DynamicsWorld& world) {
-    addPlane(world);
-    buildChains(world, false);
-}
-
-void leaveAlone(DynamicsWorld& /*world*/, int /*step*/) {}
-
-/// Takes bodies out of the pile and drops them on top of it.
 void churn(DynamicsWorld& world, int step) {
-    if (step % 11 != 0 || step > 700) {
-        return;
-    }
     BulletRandom random(static_cast<std::uint64_t>(step) + 1000);
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 3 && step % 11 == 0 && step <= 700; ++i) {
         const int number = 1 + random.below(world.bodyCount() - 1);
         world.readd(number, somewhereAbove(random, 6, 9));
     }
 }
-
-}  // namespace
 
 std::unique_ptr<btBroadphaseInterface> hashOverPairCache(PairCache* cache) {
     return std::make_unique<SpatialHashBroadphase>(cache);
@@ -269,23 +176,6 @@ int firstDifferentBody(const DynamicsWorld& a, const DynamicsWorld& b) {
         }
     }
     return -1;
-}
-
-void PrintTo(const DynamicsScene& scene, std::ostream* out) {
-    *out << scene.name;
-}
-
-const std::vector<DynamicsScene>& dynamicsScenes() {
-    static const std::vector<DynamicsScene> scenes{
-        {"pile", buildPile, leaveAlone, true},
-        {"stack", buildStack, leaveAlone, true},
-        {"compounds", buildCompounds, leaveAlone, true},
-        {"chains", buildHangingChains, leaveAlone, false},
-        {"pileWithChurn", buildPile, churn, true},
-        {"compoundsWithChurn", buildCompounds, churn, true},
-        {"chainsOnAPlane", buildChainsOnAPlane, leaveAlone, true},
-    };
-    return scenes;
 }
 
 }  // namespace hashphase::test

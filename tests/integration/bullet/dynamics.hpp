@@ -5,16 +5,13 @@
 // broadphases, can be compared bit by bit.
 
 #include <demos/scenes/ordered_dispatcher.hpp>
-#include <integration/bullet/pair_cache.hpp>
-#include <integration/bullet/spatial_hash_broadphase.hpp>
-#include <tests/integration/bullet/bullet_scenes.hpp>
-#include <tests/integration/bullet/pair_journal.hpp>
+#include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/callbacks.hpp>
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <cstddef>
-#include <iosfwd>
 #include <memory>
 #include <vector>
 
@@ -61,9 +58,6 @@ public:
 
     void takeOut(int number);
 
-    /// Hangs a point of `b` onto a point of `a`, given in the frame of each.
-    void link(int a, int b, const btVector3& pointInA, const btVector3& pointInB);
-
     /// Steps of 1/60 s.
     void step(int count = 1) {
         for (int i = 0; i < count; ++i) {
@@ -103,7 +97,6 @@ private:
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btPairCachingGhostObject>> ghosts_;
-    std::vector<std::unique_ptr<btTypedConstraint>> links_;
     btDefaultCollisionConfiguration configuration_;
     demos::OrderedDispatcher dispatcher_{&configuration_};
     std::unique_ptr<btOverlappingPairCache> cache_;
@@ -122,16 +115,9 @@ std::unique_ptr<DynamicsWorld> canonicalWorld(
 /// when none does.
 int firstDifferentBody(const DynamicsWorld& a, const DynamicsWorld& b);
 
-struct DynamicsScene {
-    const char* name;
-    void (*build)(DynamicsWorld&);
-    void (*disturb)(DynamicsWorld&, int step);  ///< called before each step
-    bool sleeps;                                ///< whether bodies fall asleep within 900 steps
-};
-
-void PrintTo(const DynamicsScene& scene, std::ostream* out);
-
-/// pile, stack, compounds, chains, pileWithChurn, compoundsWithChurn, chainsOnAPlane.
-const std::vector<DynamicsScene>& dynamicsScenes();
+/// Bodies of four shapes that fall on a plane.
+void buildPile(DynamicsWorld& world);
+/// Takes bodies out of the pile now and then, and drops them on top of it; called before each step.
+void churn(DynamicsWorld& world, int step);
 
 }  // namespace hashphase::test

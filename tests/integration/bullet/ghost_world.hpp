@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Bullet's own ghosts, and bodies that come and go.
+// Bullet's own ghosts, and bodies that come and go or are moved by hand.
 
 #include <tests/integration/bullet/dynamics.hpp>
 
@@ -11,14 +11,53 @@
 
 namespace hashphase::test {
 
+/// A world over our broadphase that tells ghosts of pairs, for objects of all kinds.
+struct ObjectWorld {
+    explicit ObjectWorld(const SpatialHashConfig& config = {}, PairOrder order = PairOrder::arrival)
+        : cache(order), broadphase(&cache, config) {
+        watchBy(&ghostCallback);
+    }
+    ~ObjectWorld() { removeAll(); }
+    ObjectWorld(const ObjectWorld&) = delete;
+    ObjectWorld& operator=(const ObjectWorld&) = delete;
+
+    void add(btCollisionObject& object, btCollisionShape& shape, const btVector3& at,
+             int group = btBroadphaseProxy::DefaultFilter) {
+        object.setCollisionShape(&shape);
+        object.setWorldTransform(placeAt(at));
+        world.addCollisionObject(&object, group, btBroadphaseProxy::AllFilter);
+    }
+    void move(btCollisionObject& object, const btVector3& to) {
+        object.setWorldTransform(placeAt(to));
+        world.updateSingleAabb(&object);
+    }
+    void removeAll() {
+        while (world.getNumCollisionObjects() > 0) {
+            world.removeCollisionObject(
+                world.getCollisionObjectArray()[world.getNumCollisionObjects() - 1]);
+        }
+    }
+    void watchBy(btOverlappingPairCallback* watcher) {
+        cache.setInternalGhostPairCallback(watcher);
+    }
+    void detect() { world.performDiscreteCollisionDetection(); }
+    [[nodiscard]] int pairCount() { return cache.getNumOverlappingPairs(); }
+
+    btBoxShape box{btVector3(1, 1, 1)};
+    btGhostPairCallback ghostCallback;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    PairCache cache;
+    SpatialHashBroadphase broadphase;
+    btCollisionWorld world{&dispatcher, &broadphase, &configuration};
+};
+
 /// A world without gravity, with a btGhostObject and a btPairCachingGhostObject at the origin and
 /// boxes in a row elsewhere, of which some come and go. The others touch, so that btDbvtBroadphase,
 /// which checks a part of its pairs in a step, would not check the ghosts' for long.
 struct GhostWorld : DynamicsWorld {
-    explicit GhostWorld(const SpatialHashConfig& config = {})
-        : GhostWorld(std::make_unique<SpatialHashBroadphase>(config)) {}
-
-    explicit GhostWorld(std::unique_ptr<btBroadphaseInterface> over)
+    explicit GhostWorld(
+        std::unique_ptr<btBroadphaseInterface> over = std::make_unique<SpatialHashBroadphase>())
         : DynamicsWorld(std::move(over)) {
         world().setGravity({0, 0, 0});
         tellGhosts();
@@ -49,8 +88,7 @@ struct GhostWorld : DynamicsWorld {
     static bool touches(const btCollisionObject& a, const btCollisionObject& b) {
         const btBroadphaseProxy* const p = a.getBroadphaseHandle();
         const btBroadphaseProxy* const q = b.getBroadphaseHandle();
-        return p != nullptr && q != nullptr &&
-               overlap({p->m_aabbMin, p->m_aabbMax}, {q->m_aabbMin, q->m_aabbMax});
+        return p != nullptr && q != nullptr && overlap(boxOf(*p), boxOf(*q));
     }
 
     static bool doesList(btGhostObject& object, btCollisionObject& other) {

@@ -1,119 +1,16 @@
 // SPDX-License-Identifier: Zlib
 //
-// What ghost objects, sensors and characters see: every pair told once when it begins and once when
-// it ends, in time, and never a body that has long left.
+// What Bullet's own ghosts list: what is there, in time, and never a body that has long left.
 
-#include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/ghost_world.hpp>
 
 #include <gtest/gtest.h>
 
-#include <iterator>
 #include <memory>
-#include <set>
-#include <string>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
-
-using Proxy = btBroadphaseProxy;
-
-constexpr int kObjects = 200;
-constexpr std::uint64_t kSeed = 99;
-
-std::set<Uids> intersection(const std::set<Uids>& a, const std::set<Uids>& b) {
-    std::set<Uids> both;
-    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(),
-                          std::inserter(both, both.begin()));
-    return both;
-}
-
-class GhostCallbacks : public testing::TestWithParam<Scene> {};
-
-// A pair that is removed and made again loses its contacts, however briefly it was gone. After a change
-// of filters it may be.
-TEST_P(GhostCallbacks, SayNothingOfAPairThatIsThereAtBothEndsOfAStep) {
-    Script script = makeScript(GetParam(), kObjects, 60, kSeed);
-    PairJournal journal;
-    auto player = std::make_unique<Player>(hashPlayer(kObjects));
-    player->cache().setInternalGhostPairCallback(&journal);
-    std::size_t keptCount = 0;
-    for (Frame& frame : script.frames) {
-        std::erase_if(frame, [](const Command& command) {
-            return command.action == Action::regroup || command.action == Action::changeFilter;
-        });
-        const std::set<Uids> before = journal.alive();
-        player->play(frame);
-        player->calculate();
-        const std::set<Uids> kept = intersection(before, journal.alive());
-        ASSERT_EQ(intersection(kept, journal.takeTouched()), std::set<Uids>{});
-        keptCount += kept.size();
-    }
-    EXPECT_GT(keptCount, 1000U);
-    player.reset();
-    EXPECT_TRUE(journal.alive().empty()) << "Destroying all proxies ends all pairs.";
-    EXPECT_EQ(journal.errors(), std::vector<std::string>{});
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenes, GhostCallbacks, testing::ValuesIn(allScenes()),
-                         [](const auto& scene) { return scene.param.name; });
-
-// --- Eager groups --------------------------------------------------------------------------------
-
-const Box kOrigin = boxAround({0, 0, 0}, {1, 1, 1});
-const Box kNearby = boxAround({1, 0, 0}, {1, 1, 1});
-const Box kAway = boxAround({9, 0, 0}, {1, 1, 1});
-
-class EagerGroups : public testing::TestWithParam<int> {
-protected:
-    Player player = hashPlayer(8, nullptr, eagerCharactersAndSensors());
-    const ObjectPairs none{};
-};
-
-TEST_P(EagerGroups, HaveTheirPairsDirectlyAfterCreateProxy) {
-    player.create(0, kOrigin);
-    player.create(1, kNearby);
-    EXPECT_EQ(player.pairs(), none) << "Others have theirs after calculateOverlappingPairs.";
-    player.create(2, kOrigin, GetParam());
-    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 2}, {1, 2}}));
-    EXPECT_EQ(player.pairsAfterStep(), (ObjectPairs{{0, 1}, {0, 2}, {1, 2}}));
-}
-
-TEST_P(EagerGroups, HaveTheirPairsDirectlyAfterSetAabb) {
-    player.create(0, kOrigin);
-    player.create(1, kAway);
-    player.create(2, kAway);
-    player.create(3, kOrigin, GetParam());
-    ASSERT_EQ(player.pairsAfterStep(), (ObjectPairs{{0, 3}, {1, 2}}));
-    player.set(3, kAway);
-    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 3}, {1, 2}, {1, 3}, {2, 3}}))
-        << "New pairs at once; old ones stay until calculateOverlappingPairs.";
-    player.set(2, kOrigin);
-    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 3}, {1, 2}, {1, 3}, {2, 3}}))
-        << "What is not eager neither gains nor loses pairs before calculateOverlappingPairs.";
-    EXPECT_EQ(player.pairsAfterStep(), (ObjectPairs{{0, 2}, {1, 3}}));
-}
-
-TEST_P(EagerGroups, KeepThePairsOfAPlaceTheyPassedUntilTheStepEnds) {
-    player.create(0, kOrigin);
-    player.create(1, kAway, GetParam());
-    player.calculate();
-    player.set(1, kOrigin);
-    player.set(1, kAway);
-    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}}));
-    EXPECT_EQ(player.pairsAfterStep(), none);
-    player.set(1, kOrigin);
-    player.set(1, kNearby);
-    EXPECT_EQ(player.pairs(), (ObjectPairs{{0, 1}}));
-    EXPECT_EQ(player.pairsAfterStep(), (ObjectPairs{{0, 1}}));
-}
-
-INSTANTIATE_TEST_SUITE_P(Groups, EagerGroups,
-                         testing::Values(Proxy::CharacterFilter, Proxy::SensorTrigger,
-                                         Proxy::CharacterFilter | Proxy::DebrisFilter));
-
-// --- What Bullet's own ghosts list ---------------------------------------------------------------
 
 // In for a few steps, then away for a few hundred.
 TEST(GhostObject, NeverListsWhatHasLeft) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Zlib
 //
-// The hard cases of `hashphase stability`, with our broadphase by Bullet's interface, in its precision.
+// The hard cases of `hashphase stability`, with our broadphase by Bullet's interface, in its precision, and
+// random operations.
 
 #include <demos/stability/bullet_subject.hpp>
+#include <tests/fuzz/property.hpp>
+#include <tests/fuzz/subjects.hpp>
 #include <tests/support/hard_case_check.hpp>
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
@@ -25,6 +28,16 @@ TEST_P(HardCases, HoldByBulletsInterface) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bullet, HardCases, testing::ValuesIn(demos::hardCases()), nameOfCase);
+
+TEST(RandomOperations, LeaveTheBroadphaseAndItsQueriesLikeBruteForce) {
+    expectNoFaultInRandomLives(kBroadphase);
+    expectNoFaultInCorpus(kBroadphase);
+}
+
+TEST(RandomOperations, LeaveThePairCacheLikeASetOfPairs) {
+    expectNoFaultInRandomLives(kCache);
+    expectNoFaultInCorpus(kCache);
+}
 
 }  // namespace
 }  // namespace hashphase::test

@@ -65,12 +65,6 @@ std::vector<HardWorld> worlds() {
     return all;
 }
 
-HardWorld worldNamed(std::string_view name) {
-    const std::vector<HardWorld> all = worlds();
-    return *std::find_if(all.begin(), all.end(),
-                         [name](const HardWorld& each) { return each.name == name; });
-}
-
 HardRun runOver(const HardWorld& world, std::string_view broadphase) {
     return HardRun(world, named(broadphase), ListOrder::canonicalByUniqueId);
 }
@@ -177,35 +171,6 @@ TEST(WorldsThatRest, SleepNoLaterAndSinkNoDeeperThanUnderBtDbvtBroadphase) {
     }
     EXPECT_GT(sumOverHash, sumOverDbvt);
     EXPECT_GE(earlierCount, 2);
-}
-
-// --- Bullets -------------------------------------------------------------------------------------
-
-PhysicsBroadphase hashWith(Sweep sweep) {
-    return {"hash", true, true, [sweep](PairCache* cache) {
-                SpatialHashConfig config;
-                config.sweep = sweep;
-                return std::make_unique<SpatialHashBroadphase>(cache, config);
-            }};
-}
-
-// Walls from 1 mm on, and bullets that move by 3 to 4 m a step; Bullet hands in where they stand.
-TEST(FastBullets, PassNoThinWallUnnoticedHoweverFarFromTheOrigin) {
-    for (const double offset : {0.0, 1024.0, kFar, 1048576.0}) {
-        SCOPED_TRACE(offset);
-        const HardWorld world = movedTo(offset, worldNamed("bullets-pass"));
-        const auto unnoticed = [&world](Sweep sweep) {
-            HardRun run(world, hashWith(sweep), ListOrder::canonical);
-            for (int step = 0; step < world.steps; ++step) {
-                run.step();
-            }
-            return run.outcome().tunnelled;
-        };
-        EXPECT_GT(2 * unnoticed(Sweep::none), world.size);
-        for (const Sweep sweep : {Sweep::box, Sweep::line, Sweep::automatic}) {
-            EXPECT_EQ(unnoticed(sweep), 0);
-        }
-    }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <string>
 
 namespace hashphase::test {
@@ -62,14 +63,12 @@ TEST(PairCacheMisuse, OfAFilterThatChangesIsAsserted) {
         const BulletProxyPair pair(a, b);
         btBroadphaseProxy* const one = &a;
         expectAsserted({{"", [&] { cache.addAcceptedPair(&a, &b); }},
-                        {"",
-                         [&] {
-                             cache.update({}, {&pair, 1}, nullptr);
-                         }},
+                        {"", [&] { cache.update({}, std::span(&pair, 1), nullptr); }},
                         {"", [&] { cache.removeOverlappingPair(&a, side.proxy(3), nullptr); }},
                         {"", [&] { cache.removeOverlappingPairsContainingProxy(&a, nullptr); }},
                         {"", [&] {
-                             cache.removeOverlappingPairsContainingProxies({&one, 1}, nullptr);
+                             cache.removeOverlappingPairsContainingProxies(std::span(&one, 1),
+                                                                           nullptr);
                          }}});
         return true;
     });
@@ -100,6 +99,7 @@ TEST(BroadphaseMisuse, IsAsserted) {
     const BroadphaseRay ray{{0, 0, 0}, {1, 0, 0}};
     const ClosestRay closest{{0, 0, 0}, {1, 0, 0}};
     std::array<btBroadphaseProxy*, 2> two{alive, nullptr};
+    const std::array twice{alive, alive};
     const std::vector<ProxyDefinition> three(3);
     const std::vector<btVector3> one(1, btVector3(0, 0, 0));
     const std::vector<btVector3> both(2, btVector3(0, 0, 0));
@@ -118,35 +118,17 @@ TEST(BroadphaseMisuse, IsAsserted) {
          {"alive", [&] { static_cast<void>(broadphase.proxyOf(deadId)); }},
          {alien, [&] { broadphase.destroyProxy(foreign, nullptr); }},
          {alien, [&] { boxes.set(foreign, kThisPlace); }},
-         {alien,
-          [&] {
-              broadphase.destroyProxies({&foreign, 1}, nullptr);
-          }},
-         {alien,
-          [&] {
-              broadphase.setAabbs({&foreign, 1}, one, one, nullptr);
-          }},
+         {alien, [&] { broadphase.destroyProxies(std::span(&foreign, 1), nullptr); }},
+         {alien, [&] { broadphase.setAabbs(std::span(&foreign, 1), one, one, nullptr); }},
          {gone, [&] { broadphase.destroyProxies(two, nullptr); }},
          {"one proxy a definition", [&] { broadphase.createProxies(three, two, nullptr); }},
          {"one box a proxy",
-          [&] {
-              broadphase.setAabbs({&alive, 1}, both, one, nullptr);
-          }},
+          [&] { broadphase.setAabbs(std::span(&alive, 1), both, one, nullptr); }},
          {"one box a proxy",
-          [&] {
-              broadphase.setAabbs({&alive, 1}, one, both, nullptr);
-          }},
-         {"",
-          [&] {
-              broadphase.rayTests({&ray, 1});
-          }},
-         {"",
-          [&] {
-              broadphase.closestRays({&closest, 1});
-          }},
-         {gone, [&] {
-              broadphase.destroyProxies(std::array{alive, alive}, nullptr);
-          }}});
+          [&] { broadphase.setAabbs(std::span(&alive, 1), one, both, nullptr); }},
+         {"", [&] { broadphase.rayTests(std::span(&ray, 1)); }},
+         {"", [&] { broadphase.closestRays(std::span(&closest, 1)); }},
+         {gone, [&] { broadphase.destroyProxies(twice, nullptr); }}});
     boxes.proxies.clear();  // the last call has destroyed it, once
 }
 

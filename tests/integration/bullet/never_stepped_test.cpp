@@ -2,13 +2,9 @@
 //
 // Worlds that are loaded, asked, changed and unloaded, and never stepped: nothing gathers.
 
-#include <integration/bullet/pair_cache.hpp>
-#include <integration/bullet/spatial_hash_broadphase.hpp>
+#include <tests/integration/bullet/ghost_world.hpp>
 
 #include <gtest/gtest.h>
-
-#include <BulletCollision/CollisionDispatch/btGhostObject.h>
-#include <btBulletCollisionCommon.h>
 
 #include <memory>
 #include <vector>
@@ -19,45 +15,30 @@ namespace {
 constexpr int kPerLevel = 400;
 constexpr int kLevels = 40;
 
-struct AskedWorld {
-    explicit AskedWorld(PairOrder order = PairOrder::arrival, const SpatialHashConfig& config = {})
-        : cache(order), broadphase(&cache, config) {
-        cache.setInternalGhostPairCallback(&ghostCallback);
-    }
+struct AskedWorld : ObjectWorld {
+    using ObjectWorld::ObjectWorld;
     ~AskedWorld() { unload(); }
-    AskedWorld(const AskedWorld&) = delete;
-    AskedWorld& operator=(const AskedWorld&) = delete;
 
-    btCollisionObject& add(bool isGhost, btCollisionShape* shape, const btVector3& at, int group) {
+    void addOne(bool isGhost, btCollisionShape& shape, const btVector3& at, int group) {
         objects.push_back(isGhost ? std::make_unique<btPairCachingGhostObject>()
                                   : std::make_unique<btCollisionObject>());
-        btCollisionObject& object = *objects.back();
-        object.setCollisionShape(shape);
-        object.getWorldTransform().setOrigin(at);
-        world.addCollisionObject(&object, group, btBroadphaseProxy::AllFilter);
-        return object;
-    }
-    void move(btCollisionObject& object, const btVector3& to) {
-        object.getWorldTransform().setOrigin(to);
-        world.updateSingleAabb(&object);
+        add(*objects.back(), shape, at, group);
     }
     /// Boxes on a floor, of which every fourth is a ghost that touches its neighbours.
     void load() {
         for (int i = 0; i < kPerLevel; ++i) {
             const bool isGhost = i % 4 == 3;
-            add(isGhost, isGhost ? &large : &small, {btScalar(i % 20) * 2, 0, btScalar(i / 20) * 2},
-                isGhost      ? btBroadphaseProxy::SensorTrigger
-                : i % 2 == 0 ? btBroadphaseProxy::StaticFilter
-                             : btBroadphaseProxy::DefaultFilter);
+            addOne(isGhost, isGhost ? large : small,
+                   {btScalar(i % 20) * 2, 0, btScalar(i / 20) * 2},
+                   isGhost      ? btBroadphaseProxy::SensorTrigger
+                   : i % 2 == 0 ? btBroadphaseProxy::StaticFilter
+                                : btBroadphaseProxy::DefaultFilter);
         }
     }
     void unload() {
-        for (const auto& object : objects) {
-            world.removeCollisionObject(object.get());
-        }
+        removeAll();
         objects.clear();
     }
-    void detect() { world.performDiscreteCollisionDetection(); }
     /// Casts rays down at the level.
     QueryCost ask() {
         QueryCost sum;
@@ -73,14 +54,8 @@ struct AskedWorld {
         return broadphase.memoryBytes() + cache.memoryBytes();
     }
 
-    btGhostPairCallback ghostCallback;
     btBoxShape small{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
     btBoxShape large{btVector3(btScalar(1.7), btScalar(0.5), btScalar(1.7))};
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    PairCache cache;
-    SpatialHashBroadphase broadphase;
-    btCollisionWorld world{&dispatcher, &broadphase, &configuration};
     std::vector<std::unique_ptr<btCollisionObject>> objects;
 };
 
@@ -88,16 +63,16 @@ TEST(NeverSteppedWorld, HoldsNoMoreAndAsksNoMoreAfterManyLevelsThanAfterAFew) {
     for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
         SpatialHashConfig config;
         config.sweep = order == PairOrder::arrival ? Sweep::none : Sweep::automatic;
-        AskedWorld world(order, config);
+        AskedWorld world(config, order);
         std::size_t memory = 0;
         QueryCost cost;
         std::uint32_t indexLimit = 0;
         for (int level = 1; level <= kLevels; ++level) {
             world.load();
             const QueryCost present = world.ask();
-            EXPECT_GT(world.cache.getNumOverlappingPairs(), kPerLevel / 4);
+            EXPECT_GT(world.pairCount(), kPerLevel / 4);
             world.unload();
-            EXPECT_EQ(world.cache.getNumOverlappingPairs(), 0);
+            EXPECT_EQ(world.pairCount(), 0);
             if (level == kLevels / 4) {  // announced pairs are given up now and then
                 memory = world.memoryBytes();
                 cost = present;
@@ -145,10 +120,10 @@ TEST(NeverSteppedWorld, HoldsNoMoreWhereObjectsAreDragged) {
 TEST(NeverSteppedWorld, HoldsThePairsOfAGhostAroundAllOfThemAlone) {
     btBoxShape around(btVector3(100, 100, 100));
     AskedWorld world;
-    world.add(true, &around, {0, 0, 0}, btBroadphaseProxy::DefaultFilter);
+    world.addOne(true, around, {0, 0, 0}, btBroadphaseProxy::DefaultFilter);
     for (int i = 0; i < 50; ++i) {
-        world.add(false, &world.small, {btScalar(2 * i - 50), 0, 50},
-                  btBroadphaseProxy::DefaultFilter);
+        world.addOne(false, world.small, {btScalar(2 * i - 50), 0, 50},
+                     btBroadphaseProxy::DefaultFilter);
     }
     world.detect();
     for (int turn = 0; turn < 20; ++turn) {
@@ -156,7 +131,7 @@ TEST(NeverSteppedWorld, HoldsThePairsOfAGhostAroundAllOfThemAlone) {
             world.move(*world.objects[std::size_t(i) + 1],
                        {btScalar((i * 7 + turn * 13) % 50), btScalar(i % (turn + 2)), 0});
         }
-        EXPECT_EQ(world.cache.getNumOverlappingPairs(), 50);
+        EXPECT_EQ(world.pairCount(), 50);
     }
 }
 

@@ -3,7 +3,6 @@
 // Memory runs out at every allocation of ours; Bullet's own arrays have memory of their own.
 
 #include <tests/integration/bullet/boxes.hpp>
-#include <tests/integration/bullet/broadphases.hpp>
 #include <tests/support/out_of_memory.hpp>
 
 #include <gtest/gtest.h>

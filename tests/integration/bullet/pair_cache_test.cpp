@@ -146,12 +146,12 @@ TEST(PairCache, ForgetsAProxyInCanonicalOrder) {
     }
     side.cache.setInternalGhostPairCallback(&side.ghosts);
     side.cache.removeOverlappingPairsContainingProxy(side.proxy(5), nullptr);
-    EXPECT_EQ(side.ghosts.all, (std::vector<ToldPairs::Told>{{false, 1, 5},
-                                                             {false, 2, 5},
-                                                             {false, 4, 5},
-                                                             {false, 5, 7},
-                                                             {false, 5, 8},
-                                                             {false, 5, 9}}));
+    EXPECT_EQ(side.ghosts.all, (std::vector<PairJournal::Told>{{false, 1, 5},
+                                                               {false, 2, 5},
+                                                               {false, 4, 5},
+                                                               {false, 5, 7},
+                                                               {false, 5, 8},
+                                                               {false, 5, 9}}));
 }
 
 TEST(PairCache, FreesAlgorithmsInCanonicalOrderInWhateverOrderPairsDie) {

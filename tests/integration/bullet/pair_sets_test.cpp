@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Zlib
 //
-// "Identical pair sets": after every calculateOverlappingPairs, over lives of objects in nine
-// scenes, our pairs are those of brute force and those of Bullet's broadphases, both ways.
+// "Identical pair sets": after every calculateOverlappingPairs, over lives of boxes in all scenes, our
+// pairs are those of brute force and those of Bullet's broadphases, both ways.
 
-#include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/scripted_boxes.hpp>
+#include <tests/support/handlers.hpp>
 
 #include <gtest/gtest.h>
 
@@ -14,8 +15,6 @@
 namespace hashphase::test {
 namespace {
 
-constexpr int kObjects = 300;
-constexpr int kFrames = 72;
 constexpr std::uint64_t kSeed = 20260;
 
 std::vector<SpatialHashConfig> configurations() {
@@ -31,78 +30,120 @@ std::vector<SpatialHashConfig> configurations() {
     return all;
 }
 
-struct Contender {
-    std::string name;
-    Player player;
-};
-
-/// All that must have precisely the pairs that overlap.
-std::vector<Contender> contenders(int objectCount) {
-    std::vector<Contender> all;
-    all.push_back(
-        {"btSimpleBroadphase", Player(objectCount, makeBroadphase<btSimpleBroadphase>())});
-    all.push_back({"exact btDbvtBroadphase", Player(objectCount, makeBroadphase<ExactDbvt>())});
-    for (const CacheKind& kind : cacheKinds()) {
-        all.push_back({kind.name, hashPlayer(objectCount, kind.make())});
+/// All that must have precisely the pairs that overlap; the first one is ours as it comes. Bullet's tree
+/// bears no NaN.
+void addContenders(std::deque<AnyBoxes>& all, bool withTree) {
+    for (const CacheKind& kind : kCacheKinds) {
+        all.emplace_back(kind.make(), eagerCharactersAndSensors());
     }
     for (const SpatialHashConfig& config : configurations()) {
-        all.push_back({"configuration " + std::to_string(all.size()),
-                       hashPlayer(objectCount, nullptr, config)});
+        all.emplace_back(makeCache<PairCache>(), config);
     }
-    return all;
+    all.emplace_back(makeBroadphase<btSimpleBroadphase>());
+    if (withTree) {
+        all.emplace_back(makeBroadphase<ExactDbvt>());
+    }
 }
 
-class PairSets : public testing::TestWithParam<Scene> {};
+class PairSets : public testing::TestWithParam<std::size_t> {
+protected:
+    static constexpr int kFrames = 60;
 
-TEST_P(PairSets, AreThoseOfBruteForceUnderEveryBroadphaseCacheAndConfiguration) {
-    const Script script = makeScript(GetParam(), kObjects, kFrames, kSeed);
-    Truth truth(kObjects);
-    std::vector<Contender> all = contenders(kObjects);
-    Player none = hashPlayer(kObjects, std::make_unique<btNullPairCache>());
-    Player loose(kObjects, makeBroadphase<btDbvtBroadphase>());
-    std::size_t pairCount = 0;
-    std::size_t extraCount = 0;
-    for (std::size_t frame = 0; frame < script.frames.size() && !HasFailure(); ++frame) {
-        SCOPED_TRACE("frame " + std::to_string(frame));
-        truth.play(script.frames[frame]);
-        const ObjectPairs expected = truth.pairs();
-        pairCount += expected.size();
-        for (Contender& each : all) {
-            each.player.play(script.frames[frame]);
-            EXPECT_EQ(difference(each.player.pairsAfterStep(), expected), "") << each.name;
-            if (auto* hash = dynamic_cast<SpatialHashBroadphase*>(&each.player.broadphase())) {
-                EXPECT_EQ(hash->validate(), "") << each.name;
+    /// A pair that is removed and made again loses its contacts, however briefly it was gone.
+    void expectNothingSaidOfPairsThatLast(const std::set<Uids>& before) {
+        const std::set<Uids> touched = journal.takeTouched();
+        for (const Uids& pair : before) {
+            const auto isPainted = [this](int uid) {
+                return world.painted.contains({static_cast<std::uint32_t>(uid - 1), 1});
+            };
+            if (journal.alive.contains(pair) && !isPainted(pair.first) && !isPainted(pair.second)) {
+                EXPECT_FALSE(touched.contains(pair));
+                ++keptCount;
             }
         }
-        none.play(script.frames[frame]);
-        EXPECT_EQ(none.pairsAfterStep(), ObjectPairs{});
-        loose.play(script.frames[frame]);
-        loose.calculate();
-        EXPECT_EQ(difference(expected, loose.overlappingPairs()), "");
-        EXPECT_EQ(excess(expected, loose.pairs()), "");
-        extraCount += loose.pairs().size() - expected.size();
+        world.painted.clear();
     }
-    EXPECT_GT(pairCount, std::size_t(kFrames * kObjects / 4)) << "The scene is too thin.";
-    EXPECT_GT(extraCount, 0U) << "Nothing tells the two sets of btDbvtBroadphase apart.";
+
+    const BoxScene<btScalar> scene = allBoxScenes<btScalar>()[GetParam()];
+    PairJournal journal;
+    ScriptedBoxes world;
+    std::size_t keptCount = 0;
+};
+
+TEST_P(PairSets, AreThoseOfBruteForceUnderEveryBroadphaseCacheAndConfiguration) {
+    const CaughtMessages aboutNan;
+    const bool isHostile = scene.name == hostileScene<btScalar>().name;
+    addContenders(world.all, !isHostile);
+    AnyBoxes& ours = world.all.front();
+    journal.hasLivingClient = hasLivingClient;
+    ours.pairCache().setInternalGhostPairCallback(&journal);
+    Script<btScalar> script(scene, kSeed,
+                            {.goBad = isHostile ? 0.05 : 0, .recolour = 0.03, .replace = 0.03});
+    script.begin(world);
+    AnyBoxes none(makeCache<btNullPairCache>());
+    std::size_t pairCount = 0;
+    for (int frame = 0; frame < kFrames && !HasFailure(); ++frame) {
+        SCOPED_TRACE(testing::Message() << scene.name << ", frame " << frame);
+        const std::set<Uids> before = journal.alive;
+        if (frame == kFrames / 4 || frame == kFrames * 3 / 4) {
+            world.decideByFilter(frame < kFrames / 2);
+        }
+        script.playFrame(world);
+        for (std::size_t i = 0; i < script.proxies().size(); i += 20) {
+            world.move(script.proxies()[i].id, scene.draw(script.random()));
+            world.move(script.proxies()[i].id, script.proxies()[i].box);  // and back
+        }
+        const auto expected = pairsByBruteForce<btScalar>(script.proxies());
+        pairCount += expected.size();
+        for (std::size_t i = 0; i < world.all.size(); ++i) {
+            world.all[i].step();
+            EXPECT_EQ(differences(ScriptedBoxes::pairs(world.all[i]), expected), "") << i;
+            if (auto* hash = dynamic_cast<SpatialHashBroadphase*>(world.all[i].over.get())) {
+                EXPECT_EQ(hash->validate(), "") << i;
+            }
+        }
+        expectNothingSaidOfPairsThatLast(before);
+    }
+    EXPECT_GT(pairCount, 1000U) << "The scene is too thin.";
+    EXPECT_GT(keptCount, 300U);
+    ours.destroyAll();
+    EXPECT_TRUE(journal.alive.empty()) << "Destroying all proxies ends all pairs.";
+    EXPECT_EQ(journal.errors, std::vector<std::string>{});
+    for (std::size_t i = 0; i < 2; ++i) {
+        none.create({{0, 0, 0}, {1, 1, 1}});
+    }
+    none.step();
+    EXPECT_EQ(none.pairCount(), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, PairSets, testing::ValuesIn(allScenes()),
-                         [](const auto& scene) { return scene.param.name; });
+std::string nameOf(const testing::TestParamInfo<std::size_t>& info) {
+    std::string name = allBoxScenes<btScalar>()[info.param].name;
+    std::erase_if(
+        name, [](char letter) { return std::isalnum(static_cast<unsigned char>(letter)) == 0; });
+    return name + std::to_string(info.param);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, PairSets,
+                         testing::Range<std::size_t>(0, allBoxScenes<btScalar>().size()), nameOf);
 
 // Tables of many thousands behave as those of a few hundred.
-TEST(PairSets, EqualBtDbvtBroadphaseThatIsForcedToBeExactInALargeWorld) {
-    constexpr int kMany = 12'000;
-    Scene scene = sceneNamed("uniform");
-    scene.place = [](BulletRandom& random, int) {
-        return boxAround(random.vector(-25, 25), random.vector(0.2, 0.8));
-    };
-    const Script script = makeScript(scene, kMany, 24, kSeed);
-    Player hash = hashPlayer(kMany);
-    Player dbvt(kMany, makeBroadphase<ExactDbvt>());
-    for (const Frame& frame : script.frames) {
-        hash.play(frame);
-        dbvt.play(frame);
-        ASSERT_EQ(difference(hash.pairsAfterStep(), dbvt.pairsAfterStep()), "");
+TEST(PairSetsOfMany, EqualBtDbvtBroadphaseThatIsForcedToBeExact) {
+    BoxScene<btScalar> scene = spreadScene<btScalar>("large", 1, 0);
+    scene.count = 12'000;
+    scene.draw = boxesIn<btScalar>(-25, 25, 0.2, 0.8);
+    ScriptedBoxes world;
+    world.all.emplace_back(makeCache<PairCache>());
+    world.all.emplace_back(makeBroadphase<ExactDbvt>());
+    Script<btScalar> script(scene, kSeed, {.goBad = 0});
+    script.begin(world);
+    for (int frame = 0; frame < 20; ++frame) {
+        script.playFrame(world);
+        for (AnyBoxes& boxes : world.all) {
+            boxes.step();
+        }
+        ASSERT_EQ(
+            differences(ScriptedBoxes::pairs(world.all[0]), ScriptedBoxes::pairs(world.all[1])),
+            "");
     }
 }
 

@@ -11,7 +11,6 @@
 #include <integration/bullet/group_filter.hpp>
 #include <integration/bullet/shape_pick.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
-#include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>
 
 #include <gtest/gtest.h>
@@ -33,7 +32,7 @@ static_assert(!std::is_constructible_v<ShapeTest, SpatialHashBroadphase>);
 class WorldPicking : public testing::Test, protected DynamicsWorld {
 protected:
     WorldPicking() {
-        dynamicsScenes().front().build(*this);
+        buildPile(*this);
         step(90);
     }
 
@@ -156,29 +155,6 @@ TEST_F(WorldPicking, AsksTheFilterForGroupsAndMasks) {
     }
     EXPECT_GT(ground, 30U);
     EXPECT_GT(mobile, 30U);
-}
-
-TEST_F(WorldPicking, SeesABodyAtOnceWhereItWasMoved) {
-    btRigidBody& moved = body(bodyCount() - 1);
-    for (int i = 0; i < 100; ++i) {
-        SCOPED_TRACE(i);
-        const btVector3 place(btScalar(random.between(-9, 9)), 30 + btScalar(i), 0);
-        moved.getWorldTransform().setOrigin(place);
-        world().updateSingleAabb(&moved);
-        const CameraLens lens;
-        const Vector3<double> target = toEigen(place).cast<double>();
-        const Camera<btScalar> view(
-            cameraMatrix<btScalar>(lens, target + Vector3<double>(9, 5, 3), target),
-            lens.depthRange, kViewport);
-        const Pixel middle = middleOf(kViewport);
-        EXPECT_EQ(objectOf(pickNearest(grid(), view.rayThrough(middle), isMobile()).id), &moved);
-        EXPECT_EQ(objectOf(closestShape(hash(), view.rayThrough(middle)).id), &moved);
-        std::vector<ProxyId> selected;
-        const Pixel reach(10, 10);
-        select(grid(), view, middle - reach, middle + reach, selected, Containment::touching,
-               isMobile());
-        EXPECT_EQ(selected, std::vector{idOf(bodyCount() - 1)});
-    }
 }
 
 TEST_F(WorldPicking, FindsNoShapesAlongEmptyRays) {

@@ -4,7 +4,6 @@
 // as a new one does, to the last bit.
 
 #include <tests/integration/bullet/boxes.hpp>
-#include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/dynamics.hpp>
 
 #include <gtest/gtest.h>
@@ -113,7 +112,7 @@ using MadeLevels = std::unique_ptr<Levels>;
 
 template <int cacheKind, Sweep sweep = Sweep::none>
 MadeLevels levelsOverHash() {
-    auto cache = cacheKinds()[std::size_t(cacheKind)].make();
+    auto cache = kCacheKinds[std::size_t(cacheKind)].make();
     auto broadphase = hashOver(cache.get(), {.sweep = sweep});
     return std::make_unique<Levels>(std::move(broadphase), std::move(cache));
 }

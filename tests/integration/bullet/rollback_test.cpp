@@ -16,7 +16,7 @@ constexpr std::size_t kBodies = 150;
 constexpr std::size_t kFrames = 40;
 constexpr std::size_t kBack = 17;  // the frame to which boxes are set back
 
-using PairChanges = std::vector<ToldPairs::Told>;
+using PairChanges = std::vector<PairJournal::Told>;
 
 /// Bodies that drift and jump; some rest for a while, so that they are filed as resting ones.
 std::vector<std::vector<Box>> framesOfBoxes() {
@@ -71,7 +71,7 @@ struct Rollback : Boxes {
     }
 
     std::vector<std::vector<Box>> frames = framesOfBoxes();
-    ToldPairs told;
+    PairJournal told;
 };
 
 TEST(Rollback, BringsTheSameBirthsAndDeathsInTheSameOrderWhateverTheOrderOfTheArray) {
@@ -106,17 +106,6 @@ TEST(Rollback, BringsTheSameArrayInCanonicalOrder) {
         ASSERT_EQ(world.listAfter(frame, frame), first[frame]) << "frame " << frame;
     }
     EXPECT_EQ(Rollback(PairOrder::canonical).listAfter(kFrames - 1, kFrames - 1), first.back());
-}
-
-TEST(Rollback, BringsTheSamePairsInOrderOfArrivalInPlacesThatDependOnHistory) {
-    Rollback world(PairOrder::arrival);
-    std::vector<Uids> first = world.listAfter(0, kBack);
-    world.listAfter(kBack + 1, kFrames - 1);
-    std::vector<Uids> second = world.listAfter(kBack, kBack);
-    EXPECT_NE(first, second);
-    std::sort(first.begin(), first.end());
-    std::sort(second.begin(), second.end());
-    EXPECT_EQ(first, second);
 }
 
 }  // namespace

@@ -3,10 +3,10 @@
 // What programs rely on in btDbvtBroadphase beyond its pairs and queries.
 
 #include <tests/integration/bullet/boxes.hpp>
+#include <tests/support/handlers.hpp>
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -18,10 +18,6 @@ namespace {
 
 const Box kHere = boxAround({0, 0, 0}, {1, 1, 1});
 const Box kThere = boxAround({9, 0, 0}, {1, 1, 1});
-
-bool haveSameBits(const btVector3& a, const btVector3& b) {
-    return std::memcmp(a.m_floats, b.m_floats, 3 * sizeof(btScalar)) == 0;
-}
 
 // --- Proxies -------------------------------------------------------------------------------------
 
@@ -93,7 +89,7 @@ TEST(SpatialHashBroadphase, KeepsABoxToTheLastBit) {
         Box got;
         boxes.broadphase.getAabb(proxy, got.min, got.max);
         for (const Box& kept : {boxOf(*proxy), got}) {
-            EXPECT_TRUE(haveSameBits(kept.min, box.min) && haveSameBits(kept.max, box.max));
+            EXPECT_TRUE(isSameBits(kept.min, box.min) && isSameBits(kept.max, box.max));
         }
     }
 }
@@ -133,6 +129,27 @@ TEST(SpatialHashBroadphase, KnowsTheBoxAroundEverything) {
     EXPECT_TRUE(isSame(all(), {{6, 0, -1}, {8, 2, 1}}));
 }
 
+// From addCollisionObject, say, which checks nothing.
+TEST(SpatialHashBroadphase, ReportsBoxesWithNanOnceCountsThemAndHasNoneAroundEverything) {
+    const CaughtMessages messages;
+    Boxes boxes;
+    boxes.create(kHere);
+    EXPECT_TRUE(messages.all().empty());
+    btBroadphaseProxy* const bad = boxes.create(kThere);
+    for (int frame = 0; frame < 24; ++frame) {
+        Box box = kThere;
+        (frame % 6 < 3 ? box.min : box.max)[frame % 3] = std::numeric_limits<btScalar>::quiet_NaN();
+        boxes.set(bad, frame % 4 == 0 ? kThere : box);
+        Box all;
+        boxes.broadphase.getBroadphaseAabb(all.min, all.max);
+        EXPECT_EQ(isSame(all, kHere), frame % 4 != 0);
+        boxes.check();
+        EXPECT_EQ(boxes.broadphase.grid().nanCount(), frame % 4 == 0 ? 0U : 1U);
+    }
+    ASSERT_EQ(messages.all().size(), 1U);
+    EXPECT_NE(messages.all()[0].find("NaN"), std::string::npos) << messages.all()[0];
+}
+
 TEST(SpatialHashBroadphase, UsesTheCacheItIsGivenAndLeavesItToItsOwner) {
     btHashedOverlappingPairCache cache;
     {
@@ -168,9 +185,7 @@ TEST(SpatialHashBroadphase, HoldsNoMoreMemoryAfterManyLives) {
             boxes.create(boxAround({btScalar(i + life) / 2, 0, 0}, {1, 1, 1}));
         }
         boxes.step();
-        while (!boxes.proxies.empty()) {
-            boxes.destroy(boxes.proxies.front());
-        }
+        boxes.destroyAll();
         boxes.step();
         before = life == 29 ? boxes.memoryBytes() : before;
     }

@@ -3,9 +3,7 @@
 // SpatialHashConfig::sweep: whoever asks where a fast body is finds it where Bullet has it, as without
 // a sweep.
 
-#include <integration/ai/zones.hpp>
 #include <integration/bullet/origin_shift.hpp>
-#include <integration/culling/culler.hpp>
 #include <tests/integration/bullet/shooting_range.hpp>
 #include <tests/support/handlers.hpp>
 
@@ -108,50 +106,6 @@ TEST(SweptQueries, SeeThemSoBetweenSubSteps) {
         ASSERT_TRUE(isSameBits(ticks[0].boxes[i], ticks[1].boxes[i])) << i;
     }
     ranges.expectTheSameBoxes();
-}
-
-// A view of a metre around where the body is drawn.
-TEST(SweptQueries, OfACullerSeeABodyInEveryFrame) {
-    ShootingRange range(Sweep::automatic);
-    const btRigidBody& ball = range.add(range.ball, 1, {0, 0, 0}, {200, 0, 0});
-    Culler<btScalar> culler;
-    for (int frame = 0; frame < 20; ++frame) {
-        range.step();
-        const btScalar x = ball.getWorldTransform().getOrigin().x();
-        using Plane = ConvexRegion<btScalar>::Plane;
-        const std::array planes{Plane({1, 0, 0}, btScalar(0.5) - x),
-                                Plane({-1, 0, 0}, btScalar(0.5) + x)};
-        culler.look(range.hash().grid(), ConvexRegion<btScalar>(planes));
-        EXPECT_TRUE(culler.isVisible(idOf(ball)));
-    }
-}
-
-// The step in which a zone of a metre notices a shot of 3.3 m a step; -1 when never.
-int stepNoticed(Sweep sweep, btScalar start) {
-    ShootingRange range(sweep);
-    range.add(range.ball, 1, {start, 0, 0}, {200, 0, 0});
-    Zones<btScalar> zones;
-    const Vector3<btScalar> low(29, -1, -1);
-    const Vector3<btScalar> high(30, 1, 1);
-    static_cast<void>(zones.add({BoxRegion<btScalar>{{low, high}}, Presence::box}));
-    int noticed = -1;
-    for (int step = 0; step < 15; ++step) {
-        range.step();
-        if (!zones.update(range.hash().grid()).entered.empty()) {
-            EXPECT_EQ(noticed, -1) << "it enters once";
-            noticed = step;
-        }
-    }
-    return noticed;
-}
-
-TEST(SweptQueries, OfZonesNoticeEachShotInTheSameStepAsWithoutASweep) {
-    for (int shot = 0; shot < 60; ++shot) {
-        const btScalar start = btScalar(shot) * 10 / 3 / 60;
-        const int expected = stepNoticed(Sweep::none, start);
-        EXPECT_GE(expected, 0);
-        EXPECT_EQ(stepNoticed(Sweep::automatic, start), expected) << shot;
-    }
 }
 
 // m_useContinuous off: Bullet hands in where the body is, and no more.

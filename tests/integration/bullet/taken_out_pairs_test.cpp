@@ -4,7 +4,6 @@
 // step: else whoever lies there would fall through the world.
 
 #include <tests/integration/bullet/boxes.hpp>
-#include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/ghost_world.hpp>
 #include <tests/support/out_of_memory.hpp>
 
@@ -154,18 +153,6 @@ struct Row : Boxes {
     }
 };
 
-// A pair of a proxy whose mask has been written since stands until the two part, whoever else is reset.
-TEST(TakenOutPairs, AreNoBusinessOfOtherPairs) {
-    Row row({0, 0.4, 0.8, 20});
-    row.proxies[0]->m_collisionFilterMask = 0;
-    row.takeOut(1, 2);
-    row.put(3, 30);
-    row.step();
-    EXPECT_TRUE(row.isPair(0, 1));
-    EXPECT_TRUE(row.isPair(1, 2));
-    EXPECT_EQ(row.broadphase.validate(), "");
-}
-
 TEST(TakenOutPairs, OfOneThatManyTouchCostWhatTheyAre) {
     FilterBy accept(true);
     Boxes boxes;
@@ -276,7 +263,7 @@ TEST(TakenOutPairs, ComeBackWhereTheCacheHadAnotherBroadphaseUntilThen) {
 
 // While others come back a callback puts one of the two where the other is.
 TEST(TakenOutPairs, ComeBackThoughACallbackMovesThem) {
-    ToldPairs act;
+    PairJournal act;
     Row row({0, 0.5, 10, 10.5});
     act.onBirth = [&](btBroadphaseProxy* a, btBroadphaseProxy* b) {
         if (uidsOf(*a, *b) == Uids(3, 4)) {
@@ -295,7 +282,7 @@ TEST(TakenOutPairs, ComeBackThoughACallbackMovesThem) {
 
 // The end of a pair is still to be told when a callback begins it anew, at once.
 TEST(PairsBegunAnew, ByACallbackAreThereAfterTheNextCalculation) {
-    ToldPairs act;
+    PairJournal act;
     SpatialHashConfig config;
     config.eagerGroups = 2;
     Row row({0, 0.5, 10, 10.5}, config, {1, 1, 2, 1});

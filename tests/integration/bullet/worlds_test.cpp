@@ -3,10 +3,7 @@
 // The broadphase in the hands of a world: who frees what, in which order, and callbacks of a world that
 // remove bodies from it.
 
-#include <tests/integration/bullet/broadphases.hpp>
 #include <tests/integration/bullet/dynamics.hpp>
-
-#include <integration/bullet/pair_cache.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <LinearMath/btPoolAllocator.h>
@@ -102,7 +99,7 @@ TEST(Worlds, GiveARefreshedObjectANewProxyWithTheSamePairs) {
 // A body whose box is too large, or NaN, is taken out of the simulation by Bullet.
 TEST(Worlds, GoOnAroundABodyThatIsNotANumber) {
     DynamicsWorld scene;
-    dynamicsScenes().front().build(scene);
+    buildPile(scene);
     const btScalar nan = std::numeric_limits<btScalar>::quiet_NaN();
     scene.body(3).setLinearVelocity({nan, 0, 0});
     scene.step(60);
@@ -113,40 +110,36 @@ TEST(Worlds, GoOnAroundABodyThatIsNotANumber) {
 }
 
 TEST(Worlds, RunOverEveryPairCacheOfBullet) {
-    const DynamicsScene& script = dynamicsScenes()[4];
-    std::vector<std::unique_ptr<btOverlappingPairCache>> caches;
-    caches.push_back(cacheKinds()[3].make());
-    caches.push_back(cacheKinds()[4].make());
-    caches.push_back(std::make_unique<btNullPairCache>());
-    for (std::size_t i = 0; i < caches.size(); ++i) {
-        DynamicsWorld scene(hashOver(caches[i].get()));
-        script.build(scene);
+    for (const auto make : {kCacheKinds[3].make, kCacheKinds[4].make, makeCache<btNullPairCache>}) {
+        const std::unique_ptr<btOverlappingPairCache> cache = make();
+        const bool hasPairs = make != makeCache<btNullPairCache>;
+        DynamicsWorld scene(hashOver(cache.get()));
+        buildPile(scene);
         for (int step = 0; step < 90; ++step) {
-            script.disturb(scene, step);
+            churn(scene, step);
             scene.step();
         }
-        EXPECT_EQ(scene.dispatcher().getNumManifolds() > 0, i != 2);
-        EXPECT_EQ(scene.body(9).getWorldTransform().getOrigin().y() < -1, i == 2)
+        EXPECT_EQ(scene.dispatcher().getNumManifolds() > 0, hasPairs);
+        EXPECT_EQ(scene.body(9).getWorldTransform().getOrigin().y() < -1, !hasPairs)
             << "Without pairs everything falls for ever.";
     }
 }
 
 TEST(Worlds, OfBtDbvtBroadphaseMoveAlikeOverOurPairCacheAndBullets) {
-    const DynamicsScene& script = dynamicsScenes()[4];
     btSphereShape large(3);
     std::vector<std::unique_ptr<DynamicsWorld>> worlds;
     std::vector<btPairCachingGhostObject*> ghosts;
     for (const std::size_t kind : {1, 3}) {
-        std::unique_ptr<btOverlappingPairCache> cache = cacheKinds()[kind].make();
+        std::unique_ptr<btOverlappingPairCache> cache = kCacheKinds[kind].make();
         btOverlappingPairCache* const given = cache.get();
         worlds.push_back(std::make_unique<DynamicsWorld>(std::make_unique<btDbvtBroadphase>(given),
                                                          std::move(cache)));
-        script.build(*worlds.back());
+        buildPile(*worlds.back());
         ghosts.push_back(&worlds.back()->addGhost(&large, {0, 1, 0}));
     }
     for (int step = 0; step < 200; ++step) {
         for (const auto& world : worlds) {
-            script.disturb(*world, step);
+            churn(*world, step);
             world->step();
         }
         ASSERT_EQ(uidList(worlds[0]->cache()), uidList(worlds[1]->cache())) << step;
@@ -156,6 +149,25 @@ TEST(Worlds, OfBtDbvtBroadphaseMoveAlikeOverOurPairCacheAndBullets) {
     }
     EXPECT_GT(worlds[0]->pairCount(), 300);
     EXPECT_GT(ghosts[0]->getNumOverlappingObjects(), 10);
+}
+
+// As in tests/integration/bullet/hard_worlds_test.cpp, where nobody comes or goes.
+TEST(Worlds, FromWhichBodiesAreTakenOutMoveAsUnderBtSimpleBroadphaseToTheLastBit) {
+    const auto hash = canonicalWorld(hashOverPairCache);
+    const auto simple =
+        canonicalWorld([](PairCache* cache) -> std::unique_ptr<btBroadphaseInterface> {
+            return std::make_unique<btSimpleBroadphase>(1000, cache);
+        });
+    buildPile(*hash);
+    buildPile(*simple);
+    for (int step = 0; step < 900; ++step) {
+        for (DynamicsWorld* const world : {hash.get(), simple.get()}) {
+            churn(*world, step);
+            world->step();
+        }
+        ASSERT_EQ(firstDifferentBody(*hash, *simple), -1) << "after step " << step;
+    }
+    EXPECT_GT(hash->sleepingCount(), 0);
 }
 
 // --- Callbacks of a world ------------------------------------------------------------------------

@@ -58,31 +58,19 @@ protected:
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(Views, Scalars);
 
-TYPED_TEST(Views, CastRaysOfWhichEveryPointIsSeenAtThePixel) {
-    Random random(0x5eed0701);
-    for (int i = 0; i < 4000; ++i) {
-        SCOPED_TRACE(i);
-        const auto view =
-            this->viewOf(randomLens(random), random.pointIn(-9, 9), random.pointIn(-9, 9));
-        const Pixel pixel(random.between(0, 1500), random.between(0, 900));
-        const RayRegion<TypeParam> ray = view.rayThrough(pixel, 1e4);
-        ASSERT_FALSE(ray.isEmpty());
-        for (const double share : {0.0, 0.25, 1.0}) {
-            const auto along = static_cast<TypeParam>(share);
-            this->expectSeenAt(view, ray.from() + along * ray.direction(), pixel);
-        }
-    }
-}
-
-TYPED_TEST(Views, CastRaysFromTheNearPlaneToTheFarPlane) {
+TYPED_TEST(Views, CastRaysFromTheNearPlaneToTheFarPlaneOfWhichEveryPointIsSeenAtThePixel) {
     Random random(0x5eed0702);
     int reversed = 0;
     for (int i = 0; i < 4000; ++i) {
         SCOPED_TRACE(i);
         const CameraLens lens = randomLens(random);
         const auto view = this->viewOf(lens, random.pointIn(-9, 9), random.pointIn(-9, 9));
-        const Pixel pixel(random.between(100, 1380), random.between(50, 770));
+        const Pixel pixel(random.between(0, 1500), random.between(0, 900));
         const RayRegion<TypeParam> ray = view.rayThrough(pixel, 500);
+        ASSERT_FALSE(ray.isEmpty());
+        for (const TypeParam share : {TypeParam(0), TypeParam(0.25), TypeParam(1)}) {
+            this->expectSeenAt(view, ray.from() + share * ray.direction(), pixel);
+        }
         const Vector3<double> from = ray.from().template cast<double>();
         const Vector3<double> to = this->endOf(ray).template cast<double>();
         const Eigen::Vector4d near = clipCoordinates(view.viewProjection(), from);
@@ -127,7 +115,6 @@ TYPED_TEST(Views, AreExactThoughTheFarPlaneIsAMillionTimesAsFarAsTheNearOne) {
 // mirror or of water, and the far plane goes wherever that leaves it.
 TYPED_TEST(Views, CastRaysFromObliqueNearPlanes) {
     Random random(0x5eed0704);
-    int seen = 0;
     for (int i = 0; i < 2000; ++i) {
         SCOPED_TRACE(i);
         CameraLens lens;
@@ -151,9 +138,7 @@ TYPED_TEST(Views, CastRaysFromObliqueNearPlanes) {
         EXPECT_NEAR(plane.dot(from), 0, 1e-3);
         this->expectSeenAt(view, ray.from(), pixel);
         this->expectSeenAt(view, this->endOf(ray), pixel);
-        ++seen;
     }
-    EXPECT_EQ(seen, 2000);
 }
 
 TYPED_TEST(Views, TakeTheOrderOfDepthsFromThePerspective) {

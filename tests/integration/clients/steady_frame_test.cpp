@@ -2,19 +2,9 @@
 //
 // A frame like the last one takes no memory.
 
-#include <integration/ai/nearest.hpp>
-#include <integration/ai/proximity.hpp>
-#include <integration/ai/radar.hpp>
-#include <integration/ai/rarest_colour.hpp>
-#include <integration/ai/sight.hpp>
-#include <integration/ai/zones.hpp>
-#include <integration/culling/culler.hpp>
-#include <integration/picking/drag_selection.hpp>
-#include <integration/picking/ground.hpp>
-#include <integration/picking/pick.hpp>
+#include <tests/integration/all_clients.hpp>
 #include <tests/integration/terrain/meshes.hpp>
 #include <tests/support/box_scenes.hpp>
-#include <tests/support/cameras.hpp>
 #include <tests/support/count_allocations.hpp>
 
 #include <gtest/gtest.h>
@@ -27,87 +17,30 @@
 namespace hashphase::test {
 namespace {
 
-/// Bodies that swing about their homes, agents that look around and a camera: everything is asked.
-class SwingingBodies {
-public:
+/// Bodies that swing about their homes.
+struct SwingingBodies {
     static constexpr int kPeriod = 126;  // frames
 
     SwingingBodies() {
-        Random random(0x5eed0f01);
         for (int i = 0; i < 2000; ++i) {
-            homes_.push_back(random.pointIn(-20, 20));
-            ids_.push_back(grid_.add(boxAround<float>(homes_.back(), {0.5, 0.5, 0.5})));
-            colours_.push_back(random.below(4));
-        }
-        for (Viewer<float>& viewer : viewers_) {
-            viewer.eye = random.pointIn(-20, 20).cast<float>();
-            viewer.range = 8;
-            viewer.halfAngle = 1;
-            static_cast<void>(zones_.add({SphereRegion<float>(viewer.eye, 4)}));
+            homes.push_back(random.pointIn(-20, 20));
+            ids.push_back(grid.add(boxAround<float>(homes.back(), {0.5, 0.5, 0.5})));
         }
     }
-
-    /// Returns how much was found.
-    std::size_t play(int frame) {
-        for (std::size_t i = 0; i < ids_.size(); ++i) {
+    void play(int frame) {
+        for (std::size_t i = 0; i < ids.size(); ++i) {
             const double turn = 2 * std::numbers::pi * (frame % kPeriod) / kPeriod;
             const double swing = std::sin(turn + static_cast<double>(i));
             const Vector3<double> offset = Vector3<double>::Constant(swing);
-            grid_.move(ids_[i], boxAround<float>(homes_[i] + offset, {0.5, 0.5, 0.5}));
+            grid.move(ids[i], boxAround<float>(homes[i] + offset, {0.5, 0.5, 0.5}));
         }
-        grid_.update();
-        return askByAgents() + askByCamera();
+        grid.update();
     }
 
-private:
-    std::size_t askByAgents() {
-        for (const Viewer<float>& viewer : viewers_) {
-            findWithin(grid_, viewer.eye, 5, found_);
-            estimateWithin(grid_, viewer.eye, 5, found_);
-            findNearest(grid_, viewer.eye, 8, 100, nearest_);
-        }
-        sight_.look(grid_, viewers_);
-        radar_.scan(grid_, {}, 3, [](ProxyId id) { return id.index % 3; });
-        rarest_.update(grid_, 2, 4, colours_);
-        const ZoneEvents events = zones_.update(grid_);
-        return events.entered.size() + events.left.size();
-    }
-
-    std::size_t askByCamera() {
-        const Camera<float> view(cameraMatrix<float>({}, {-40, 20, 0}, {0, 0, 0}),
-                                 DepthRange::zeroToOne, Viewport{0, 0, 1280, 720});
-        culler_.look(grid_, frustumRegion<float>(view.viewProjection(), view.depthRange()));
-        const RayRegion<float> ray = view.rayThrough({640, 360});
-        const auto test = [](ProxyId, const RayRegion<float>&, float limit) {
-            return std::optional(limit);
-        };
-        std::size_t count = culler_.count() + (pickNearest(grid_, ray).id.isNull() ? 0 : 1);
-        pickAll(grid_, ray, picked_, test);
-        count += picked_.size();
-        pickAll(grid_, clipToHeights(ray, {-5, 5}), picked_);
-        count += picked_.size();
-        select(grid_, view, {400, 200}, {800, 500}, found_);
-        count += found_.size();
-        CollectAll onMap(onMap_);
-        onMap_.clear();
-        grid_.visit(dragFootprint(view, {400, 200}, {800, 500}, {-5, 5}).region(), onMap);
-        return count + onMap_.size();
-    }
-
-    Grid<float> grid_;
-    std::vector<ProxyId> ids_;
-    std::vector<Vector3<double>> homes_;
-    std::vector<std::uint32_t> colours_;
-    std::vector<Viewer<float>> viewers_ = std::vector<Viewer<float>>(50);
-    Zones<float> zones_;
-    Sight<float> sight_;
-    Radar<float> radar_;
-    RarestColour<float> rarest_;
-    Culler<float> culler_;
-    std::vector<ProxyId> found_;
-    std::vector<ProxyId> onMap_;
-    std::vector<KeyedProxy<float>> nearest_;
-    std::vector<Picked<float>> picked_;
+    Random random{0x5eed0f01};
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    std::vector<Vector3<double>> homes;
 };
 
 TEST(SteadyFrame, OfAllClientsAllocatesNothing) {
@@ -115,16 +48,26 @@ TEST(SteadyFrame, OfAllClientsAllocatesNothing) {
         GTEST_SKIP() << "allocations are not counted under a sanitizer";
     }
     SwingingBodies bodies;
+    std::vector<Vector3<float>> eyes;
+    for (int i = 0; i < 50; ++i) {
+        eyes.push_back(bodies.random.pointIn(-20, 20).cast<float>());
+    }
+    AllClients<float> clients(
+        eyes, 2000, [](ProxyId id) { return id.index % 3 != 0; },
+        [](ProxyId id) { return id.index % 50 == 0; });
     int frame = 0;
     // By then the grid has given back what the first ones took.
     while (frame < 3 * SwingingBodies::kPeriod) {
         bodies.play(frame++);
+        clients.ask(bodies.grid);
     }
     const std::size_t before = allocationCount();
     ASSERT_GT(before, 0U);
     std::size_t found = 0;
     while (frame < 5 * SwingingBodies::kPeriod) {
-        found += bodies.play(frame++);
+        bodies.play(frame++);
+        clients.ask(bodies.grid);
+        found += clients.size();
     }
     EXPECT_EQ(allocationCount(), before);
     EXPECT_GT(found, SwingingBodies::kPeriod * 200U);

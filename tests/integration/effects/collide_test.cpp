@@ -33,7 +33,7 @@ std::vector<BodyId> addThrong(Simulation<float>& simulation) {
     return bodies;
 }
 
-SceneEffects throngEffects(std::initializer_list<Effect> effects) {
+SceneEffects throngEffects(EffectSet effects) {
     SceneEffects all = declared(effects);
     all.motion->bounds = {Vector3<double>::Zero(), Vector3<double>::Constant(14)};
     return all;

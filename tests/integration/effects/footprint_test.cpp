@@ -47,17 +47,6 @@ void runCalmly(Simulation<float>& simulation, int frames) {
     }
 }
 
-/// With restitution and speeds of which nothing comes in the calm scene.
-SceneEffects calmEffects(EffectSet declared) {
-    SceneEffects effects;
-    for (const Effect effect : kAllEffects) {
-        if (declared.contains(effect)) {
-            effects.declare(effect);
-        }
-    }
-    return effects;
-}
-
 std::vector<EffectSet> someSubsets() {
     const EffectSet base{Effect::motion, Effect::pairs};
     std::vector<EffectSet> subsets{{}, {Effect::motion}, base, kSimulated};
@@ -78,7 +67,7 @@ TEST(Footprint, IsThatOfEachEffectAddedUpToTheByte) {
         if (!declared.contains(Effect::pairs)) {
             continue;  // without motion, and without pairs, other things happen
         }
-        Simulation<float> simulation(calmEffects(declared));
+        Simulation<float> simulation(test::declared(declared));
         fillCalmly(simulation);
         runCalmly(simulation, 12);
         ASSERT_EQ(simulation.cost()[SceneCounter::contactsSolved], 0U);
@@ -102,7 +91,7 @@ TEST(Footprint, IsWhatTheHeapHolds) {
     }
     for (const EffectSet declared : someSubsets()) {
         const std::size_t before = bytesHeld();
-        const auto simulation = std::make_unique<Simulation<float>>(calmEffects(declared));
+        const auto simulation = std::make_unique<Simulation<float>>(test::declared(declared));
         fillCalmly(*simulation);
         runCalmly(*simulation, 12);
         EXPECT_EQ(totalBytes(simulation->footprint()), bytesHeld() - before) << namesOf(declared);
@@ -110,11 +99,11 @@ TEST(Footprint, IsWhatTheHeapHolds) {
 }
 
 TEST(Footprint, OfWhatIsTakenBackIsGone) {
-    Simulation<float> simulation(calmEffects(kSimulated));
+    Simulation<float> simulation(declared(kSimulated));
     fillCalmly(simulation);
     runCalmly(simulation, 3);
     const EffectSet few{Effect::motion, Effect::culling};
-    simulation.declare(calmEffects(few));
+    simulation.declare(declared(few));
     runCalmly(simulation, 3);
     for (std::size_t i = 0; i < kSceneTableCount; ++i) {
         const SceneItem& item = sceneTables()[i];

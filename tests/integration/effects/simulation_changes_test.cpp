@@ -25,52 +25,6 @@ using Point = Vector3<float>;
 
 // --- Changes -------------------------------------------------------------------------------------
 
-TEST(Simulation, GoesOnAfterAnotherDeclaration) {
-    Random random(0x5eed0fed);
-    Simulation<float> simulation(smallSceneEffects(kSimulated));
-    fill(simulation);
-    std::vector<BodyId> added;
-    for (int round = 0; round < 60; ++round) {
-        EffectSet some = kSimulated;
-        for (const Effect effect : kAllEffects) {
-            if (random.chance(0.4)) {
-                some.erase(effect);
-            }
-        }
-        const SceneEffects effects = smallSceneEffects(some);
-        if (effectsError(effects).empty()) {
-            simulation.declare(effects);
-        } else {
-            EXPECT_THROW(simulation.declare(effects), std::invalid_argument);
-        }
-        if (!added.empty() && random.chance(0.6)) {
-            const std::size_t chosen = random.below(static_cast<std::uint32_t>(added.size()));
-            simulation.remove(added[chosen]);
-            EXPECT_FALSE(simulation.contains(added[chosen]));
-            added.erase(added.begin() + static_cast<std::ptrdiff_t>(chosen));
-        }
-        for (int i = 0; i < 2; ++i) {
-            added.push_back(
-                simulation.add({.position = random.pointIn({0, 1, 0}, {20, 3, 20}).cast<float>()}));
-        }
-        simulation.advance(kStep);
-        ASSERT_EQ(simulation.validate(), "") << "round " << round << ", " << namesOf(some);
-        ASSERT_EQ(simulation.size(), 40 + added.size());
-    }
-}
-
-TEST(Simulation, TakesUpPairsLater) {
-    Simulation<float> simulation(declared({Effect::motion, Effect::culling}));
-    const BodyId a = simulation.add({});
-    const BodyId b = simulation.add({.position = {1, 0, 0}});
-    simulation.advance(kStep);
-    simulation.declare(declared({Effect::motion, Effect::culling, Effect::pairs}));
-    simulation.advance(kStep);
-    ASSERT_EQ(simulation.pairChanges().born.size(), 1U);
-    EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].first), a);
-    EXPECT_EQ(simulation.bodyOf(simulation.pairChanges().born[0].second), b);
-}
-
 TEST(Simulation, KeepsItsProxiesWhenPairsAndSweepComeAndGo) {
     SceneEffects effects = declared({Effect::motion, Effect::zones, Effect::picking});
     Simulation<float> simulation(effects);
@@ -105,22 +59,6 @@ TEST(Simulation, KeepsItsProxiesWhenPairsAndSweepComeAndGo) {
             EXPECT_EQ(simulation.pairCount(), 1U);
         }
     }
-}
-
-TEST(Simulation, TellsTheEndOfWhatWasMetOnAWayWhenSweepGoes) {
-    SceneEffects effects = declared({Effect::motion, Effect::pairs, Effect::sweep});
-    Simulation<float> simulation(effects);
-    simulation.add({.position = {0, 0, 0}, .velocity = {50 / kStep, 0, 0}});
-    simulation.add({.position = {25, 0, 0}});
-    simulation.advance(kStep);
-    EXPECT_EQ(simulation.pairChanges().born.size(), 1U);
-    effects.sweep.reset();
-    simulation.declare(effects);
-    EXPECT_EQ(simulation.pairCount(), 1U);
-    simulation.advance(kStep);
-    EXPECT_EQ(simulation.pairChanges().died.size(), 1U);
-    EXPECT_EQ(simulation.pairCount(), 0U);
-    EXPECT_EQ(simulation.validate(), "");
 }
 
 TEST(Simulation, LooksForPairsWhileSomebodyTakesPart) {

@@ -8,7 +8,6 @@
 #include <tests/support/random.hpp>
 
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <vector>
 
@@ -35,22 +34,19 @@ SceneCost run(Simulation<Scalar>& simulation, int frames, Scalar seconds = Scala
 }
 
 /// These effects, with default settings.
-[[nodiscard]] inline SceneEffects declared(std::initializer_list<Effect> effects) {
-    SceneEffects all;
-    for (const Effect effect : effects) {
-        all.declare(effect);
-    }
-    return all;
-}
-
-/// The effects with settings under which each has something to do in the small scene.
-[[nodiscard]] inline SceneEffects smallSceneEffects(EffectSet declared) {
+[[nodiscard]] inline SceneEffects declared(EffectSet set) {
     SceneEffects effects;
     for (const Effect effect : kAllEffects) {
-        if (declared.contains(effect)) {
+        if (set.contains(effect)) {
             effects.declare(effect);
         }
     }
+    return effects;
+}
+
+/// The effects with settings under which each has something to do in the small scene.
+[[nodiscard]] inline SceneEffects smallSceneEffects(EffectSet set) {
+    SceneEffects effects = declared(set);
     if (effects.motion) {
         effects.motion->bounds = {Vector3<double>(0, -100, 0), Vector3<double>(20, 100, 20)};
     }

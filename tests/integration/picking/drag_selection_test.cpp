@@ -136,29 +136,6 @@ Camera<Scalar> levelView() {
     return {cameraMatrix<Scalar>(lens, {0, 2, 0}, {0, 2, -1}), lens.depthRange, kViewport};
 }
 
-TYPED_TEST(DragSelection, ReachesOverTheHorizon) {
-    Grid<TypeParam> plain;
-    const ProxyId near = plain.add(makeBox<TypeParam>(-1, 0, -20, 1, 1, -19));
-    const ProxyId atHorizon = plain.add(makeBox<TypeParam>(-50, 0, -9000, 50, 30, -8990));
-    const ProxyId inTheAir = plain.add(makeBox<TypeParam>(-1, 6, -20, 1, 7, -19));
-    const ProxyId beside = plain.add(makeBox<TypeParam>(40, 0, -20, 41, 1, -19));
-    const ProxyId behind = plain.add(makeBox<TypeParam>(-1, 0, 19, 1, 1, 20));
-    const auto view = levelView<TypeParam>();
-    const auto has = [&](const Pixel& a, const Pixel& b, ProxyId id) {
-        select(plain, view, a, b, this->selected);
-        return std::binary_search(this->selected.begin(), this->selected.end(), id);
-    };
-    const Pixel left(640, 200);
-    const Pixel right(840, 700);  // the horizon is at 410
-    EXPECT_TRUE(has(left, right, near));
-    EXPECT_TRUE(has(left, right, atHorizon));
-    EXPECT_TRUE(has(left, right, inTheAir));
-    EXPECT_FALSE(has(left, right, beside));
-    EXPECT_FALSE(has(left, right, behind));
-    EXPECT_FALSE(has(left, {840, 380}, near));
-    EXPECT_TRUE(has(left, {840, 380}, inTheAir));
-}
-
 TYPED_TEST(DragSelection, BesideTheViewportSelectsNothingAndSaysSo) {
     const auto view = levelView<TypeParam>();
     const auto errorOf = [&](const Pixel& a, const Pixel& b) {
@@ -179,26 +156,6 @@ TYPED_TEST(DragSelection, BesideTheViewportSelectsNothingAndSaysSo) {
     this->selected.assign(3, ProxyId{});
     select(this->grid, bad, {0, 0}, {9, 9}, this->selected);
     EXPECT_TRUE(this->selected.empty());
-}
-
-TYPED_TEST(DragSelection, IsCutOffAtTheViewport) {
-    const auto view = levelView<TypeParam>();
-    select(this->grid, view, {100, 50}, {1380, 770}, this->selected);
-    const std::vector<ProxyId> whole = this->selected;
-    EXPECT_GT(whole.size(), 10U);
-    select(this->grid, view, {1e9, -1e9}, {-1e9, 1e9}, this->selected);
-    EXPECT_EQ(this->selected, whole);
-}
-
-TYPED_TEST(DragSelection, AsksTheFilter) {
-    const auto view = levelView<TypeParam>();
-    const auto isEven = [](ProxyId id) { return id.index % 2 == 0; };
-    select(this->grid, view, {100, 50}, {1380, 770}, this->selected);
-    std::vector<ProxyId> expected = this->selected;
-    std::erase_if(expected, [&](ProxyId id) { return !isEven(id); });
-    EXPECT_LT(expected.size(), this->selected.size());
-    select(this->grid, view, {100, 50}, {1380, 770}, this->selected, Containment::touching, isEven);
-    EXPECT_EQ(this->selected, expected);
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Zlib
 
-// Who is seen from where; in lives of all scenes: ai_scenes_test.cpp.
+// What agents are told, where that is known without brute force; in lives of all scenes:
+// ai_scenes_test.cpp.
 
+#include <integration/ai/proximity.hpp>
+#include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>
+#include <integration/ai/zones.hpp>
 #include <tests/support/box_scenes.hpp>
 
 #include <gtest/gtest.h>
@@ -16,7 +20,7 @@ namespace hashphase::test {
 namespace {
 
 template <class Scalar>
-class SightTest : public testing::Test {
+class AgentsTest : public testing::Test {
 protected:
     static constexpr Scalar kNan = std::numeric_limits<Scalar>::quiet_NaN();
     static constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
@@ -26,21 +30,69 @@ protected:
         const Vector3<Scalar> point(x, y, z);
         return grid.add({point, point});
     }
-    bool sees(const Viewer<Scalar>& viewer, ProxyId target) {
-        std::vector<ProxyId> seen;
-        visibleFrom(grid, viewer, seen);
-        const bool isAmong = std::find(seen.begin(), seen.end(), target) != seen.end();
-        EXPECT_EQ(canSee(grid, viewer, target), isAmong);
-        return isAmong;
-    }
 
     Grid<Scalar> grid;
 };
 
 using Scalars = testing::Types<float, double>;
-TYPED_TEST_SUITE(SightTest, Scalars);
+TYPED_TEST_SUITE(AgentsTest, Scalars);
 
-TYPED_TEST(SightTest, OfAConeIsByTheAngleToItsAxis) {
+// --- Proximity -----------------------------------------------------------------------------------
+
+TYPED_TEST(AgentsTest, ThatAreEstimatedToBeNearAreAllThatAreAndNoneFartherThanACell) {
+    GridConfig config;
+    config.cellSize = 1;
+    Grid<TypeParam> cells(config);
+    Random random(0x5eed0a02);
+    for (int i = 0; i < 4000; ++i) {
+        const Vector3<double> at = random.pointIn(0, 20);
+        static_cast<void>(cells.add(boxAround<TypeParam>(at, {0.25, 0.25, 0.25})));
+    }
+    std::vector<ProxyId> found;
+    std::vector<ProxyId> estimated;
+    for (const double radius : {0.25, 1.0, 4.0}) {
+        const auto reach = static_cast<TypeParam>(radius);
+        for (int i = 0; i < 100; ++i) {
+            const Vector3<TypeParam> point = random.pointIn(2, 18).cast<TypeParam>();
+            findWithin(cells, point, reach, found);
+            estimateWithin(cells, point, reach, estimated);
+            ASSERT_TRUE(std::ranges::includes(estimated, found));
+            for (const ProxyId id : estimated) {
+                const auto away = static_cast<double>(cells.box(id).exteriorDistance(point));
+                ASSERT_LE(away, std::sqrt(3.0) * (radius + 1) * 1.00001);
+            }
+        }
+    }
+}
+
+// --- Radar ---------------------------------------------------------------------------------------
+
+TYPED_TEST(AgentsTest, AreOnARadarWhichTurnsWithTheHeading) {
+    // Ahead along the heading is up in rows; to its side is up in columns.
+    constexpr auto kQuarter = static_cast<TypeParam>(std::numbers::pi / 2);
+    RadarWindow<TypeParam> window{.center = {100, 0, 200}, .columns = 3, .rows = 3};
+    this->addPoint(100, 0, 210);
+    using Counts = std::vector<std::uint32_t>;
+    Radar<TypeParam> radar;
+    const auto scan = [&] {
+        const auto counts = radar.scan(this->grid, window, 1, [](ProxyId) { return 0U; });
+        return Counts(counts.begin(), counts.end());
+    };
+    window.heading = TypeParam(0);
+    EXPECT_EQ(scan(), (Counts{0, 0, 0, 0, 0, 0, 0, 1, 0})) << "ahead";
+    window.heading = kQuarter;  // looks along x
+    EXPECT_EQ(scan(), (Counts{0, 0, 0, 1, 0, 0, 0, 0, 0})) << "at its left";
+    window.heading = 2 * kQuarter;
+    EXPECT_EQ(scan(), (Counts{0, 1, 0, 0, 0, 0, 0, 0, 0})) << "behind";
+    window.heading = -kQuarter;
+    EXPECT_EQ(scan(), (Counts{0, 0, 0, 0, 0, 1, 0, 0, 0})) << "at its right";
+    window.heading = kQuarter / 2;
+    EXPECT_EQ(scan(), (Counts{0, 0, 0, 0, 0, 0, 1, 0, 0})) << "ahead, on the left";
+}
+
+// --- Sight ---------------------------------------------------------------------------------------
+
+TYPED_TEST(AgentsTest, AreSeenInAConeByTheAngleToItsAxis) {
     // The definition, in higher precision.
     Random random(0x5eed0b03);
     int inside = 0;
@@ -71,46 +123,9 @@ TYPED_TEST(SightTest, OfAConeIsByTheAngleToItsAxis) {
     EXPECT_GT(inside, 4000);
 }
 
-TYPED_TEST(SightTest, OfAConeLooksAsFarAsItsSurfaceReachesAlongEachAxis) {
-    Random random(0x5eed0b07);
-    int seen = 0;
-    for (int i = 0; i < 2000; ++i) {
-        const Vector3<double> axis = random.pointIn(-1, 1).normalized();
-        const double halfAngle = random.between(0, 3.1);
-        Viewer<TypeParam> viewer;
-        viewer.eye = random.pointIn(-100, 100).cast<TypeParam>();
-        viewer.direction = axis.cast<TypeParam>();
-        viewer.halfAngle = static_cast<TypeParam>(halfAngle);
-        viewer.range = static_cast<TypeParam>(random.logBetween(0.1, 1000));
-        const SightRegion<TypeParam> view(viewer);
-        for (int side = 0; side < 6; ++side) {
-            // The direction of the cone that is nearest to this side of an axis.
-            const Vector3<double> unit =
-                Vector3<double>::Unit(side / 2) * (side % 2 == 0 ? 1.0 : -1.0);
-            const double apart = std::acos(unit.dot(axis));
-            const Vector3<double> across = (unit - unit.dot(axis) * axis).normalized();
-            const double turn = std::min(apart, halfAngle * 0.999);
-            const Vector3<double> nearest = std::cos(turn) * axis + std::sin(turn) * across;
-            const Vector3<TypeParam> point =
-                viewer.eye + nearest.cast<TypeParam>() * (viewer.range * TypeParam(0.999));
-            seen += view.key({point, point}) >= 0 ? 1 : 0;
-            ASSERT_TRUE(view.bounds().contains(point) || view.key({point, point}) < 0)
-                << "half angle " << halfAngle << " about " << axis.transpose();
-        }
-    }
-    EXPECT_GT(seen, 11900);
-}
-
-TYPED_TEST(SightTest, OfANarrowConeReadsFarLessThanItsBall) {
-    Random random(0x5eed0b04);
-    for (int i = 0; i < 3000; ++i) {
-        this->addPoint(static_cast<TypeParam>(random.between(-50, 50)),
-                       static_cast<TypeParam>(random.between(-50, 50)),
-                       static_cast<TypeParam>(random.between(-50, 50)));
-    }
+TYPED_TEST(AgentsTest, WhoLookIntoANarrowConeReadFarLessThanItsBall) {
     Viewer<TypeParam> viewer;
     viewer.range = 50;
-    CollectCount count;
     const Aabb<TypeParam> ball = SightRegion<TypeParam>(viewer).bounds();
     viewer.halfAngle = TypeParam(0.2);
     const Aabb<TypeParam> cone = SightRegion<TypeParam>(viewer).bounds();
@@ -118,44 +133,7 @@ TYPED_TEST(SightTest, OfANarrowConeReadsFarLessThanItsBall) {
     EXPECT_TRUE(ball.contains(cone));
 }
 
-TYPED_TEST(SightTest, StopsAtAWallAndNotAtWhatIsBehindOrBeside) {
-    const ProxyId target = this->addPoint(10, 0, 0);
-    Viewer<TypeParam> viewer;
-    EXPECT_TRUE(this->sees(viewer, target));
-    const ProxyId wall = this->grid.add(makeBox<TypeParam>(5, -1, -1, 6, 1, 1));
-    EXPECT_FALSE(this->sees(viewer, target));
-    const auto notTheWall = [wall](ProxyId id) { return id != wall; };
-    EXPECT_TRUE(canSee(this->grid, viewer, target, notTheWall));
-    this->grid.move(wall, makeBox<TypeParam>(11, -1, -1, 12, 1, 1));
-    EXPECT_TRUE(this->sees(viewer, target)) << "behind, and seen at once";
-    this->grid.move(wall, makeBox<TypeParam>(10, -1, -1, 12, 1, 1));
-    EXPECT_TRUE(this->sees(viewer, target)) << "begins where the line ends";
-    this->grid.move(wall, makeBox<TypeParam>(5, 1, -1, 6, 2, 1));
-    EXPECT_TRUE(this->sees(viewer, target)) << "beside";
-    this->grid.move(wall, makeBox<TypeParam>(5, 0, -1, 6, 2, 1));
-    EXPECT_FALSE(this->sees(viewer, target)) << "grazed";
-    this->grid.move(wall, makeBox<TypeParam>(-1, -1, -1, 1, 1, 1));
-    EXPECT_TRUE(this->sees(viewer, target)) << "around the eye";
-    this->grid.move(wall, makeBox<TypeParam>(TypeParam(0.5), -1, -1, 1, 1, 1));
-    EXPECT_FALSE(this->sees(viewer, target)) << "before the eye";
-    viewer.self = wall;
-    EXPECT_TRUE(this->sees(viewer, target)) << "the viewer's own body";
-    EXPECT_FALSE(canSee(this->grid, viewer, wall)) << "itself";
-    EXPECT_FALSE(hasLineOfSight(this->grid, {0, 0, 0}, {10, 0, 0}));
-    EXPECT_TRUE(hasLineOfSight(this->grid, {0, 0, 0}, {10, 0, 0}, acceptAll, wall, target));
-    this->grid.remove(target);
-    EXPECT_FALSE(this->sees(viewer, target)) << "no longer there";
-}
-
-TYPED_TEST(SightTest, DoesNotEndAtTheTargetsOwnBox) {
-    const ProxyId target = this->grid.add(makeBox<TypeParam>(9, -1, -1, 11, 1, 1));
-    EXPECT_TRUE(this->sees({}, target));
-    Viewer<TypeParam> within;
-    within.eye = {TypeParam(9.5), 0, 0};
-    EXPECT_TRUE(this->sees(within, target));
-}
-
-TYPED_TEST(SightTest, HasADefinedAnswerForDegenerateViewers) {
+TYPED_TEST(AgentsTest, WhoLookInNoOrdinaryWaySeeWhatIsDefined) {
     const ProxyId ahead = this->addPoint(10, 0, 0);
     const ProxyId behind = this->addPoint(-10, 0, 0);
     const ProxyId beside = this->addPoint(0, 10, 0);
@@ -212,6 +190,29 @@ TYPED_TEST(SightTest, HasADefinedAnswerForDegenerateViewers) {
     EXPECT_FALSE(hasLineOfSight(this->grid, {nan, 0, 0}, {0, 0, 0}));
     EXPECT_FALSE(hasLineOfSight(this->grid, {0, 0, 0}, {infinity, 0, 0}));
     EXPECT_FALSE(canSee(this->grid, V{}, ProxyId{}));
+}
+
+// --- Zones ---------------------------------------------------------------------------------------
+
+TYPED_TEST(AgentsTest, EnterZonesOfAnotherGridOnceTheseForget) {
+    using Point = Vector3<TypeParam>;
+    Zones<TypeParam> zones;
+    const Zone<TypeParam> here{SphereRegion<TypeParam>(Point::Zero(), 5)};
+    const ZoneId kept = zones.add(here);
+    const ZoneId removed = zones.add(here);
+    for (int round = 0; round < 2; ++round) {
+        Grid<TypeParam> other;
+        const ProxyId id = other.add({Point(0, 0, 0), Point(1, 1, 1)});
+        const ZoneEvents events = zones.update(other);
+        ASSERT_EQ(events.entered.size(), round == 0 ? 2U : 1U);
+        EXPECT_EQ(events.entered[0], (ZoneEvent{kept, id}));
+        EXPECT_TRUE(events.stayed.empty() && events.left.empty());
+        if (round == 0) {
+            zones.remove(removed);
+        }
+        zones.forgetOccupants();
+        EXPECT_TRUE(zones.occupants(kept).empty());
+    }
 }
 
 }  // namespace
