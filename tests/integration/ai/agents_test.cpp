@@ -3,6 +3,7 @@
 // What agents are told, where that is known without brute force; in lives of all scenes:
 // ai_scenes_test.cpp.
 
+#include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/sight.hpp>
@@ -60,6 +61,31 @@ TYPED_TEST(AgentsTest, ThatAreEstimatedToBeNearAreAllThatAreAndNoneFartherThanAC
             for (const ProxyId id : estimated) {
                 const auto away = static_cast<double>(cells.box(id).exteriorDistance(point));
                 ASSERT_LE(away, std::sqrt(3.0) * (radius + 1) * 1.00001);
+            }
+        }
+    }
+}
+
+TYPED_TEST(AgentsTest, AreEquallyNearWhereSquaresOverflow) {
+    const TypeParam far = sizeof(TypeParam) == sizeof(float) ? TypeParam(1e30) : TypeParam(1e200);
+    std::vector<ProxyId> ids;
+    for (const int times : {3, 1, 2}) {
+        ids.push_back(this->addPoint(static_cast<TypeParam>(times) * far, 0, 0));
+    }
+    // So many others, still farther away, that the search takes its time.
+    for (int i = 0; i < 5000; ++i) {
+        this->addPoint(0, TypeParam(5) * far, 0);
+    }
+    this->grid.update();
+    const auto isOneOfThree = [](ProxyId id) { return id.index < 3; };
+    std::vector<KeyedProxy<TypeParam>> nearest;
+    for (const std::size_t count : {1, 2, 3}) {
+        for (const bool isLimited : {false, true}) {  // so that the first one is too far away
+            const TypeParam most = isLimited ? far * TypeParam(2.5) : this->kInfinity;
+            findNearest(this->grid, {0, 0, 0}, count, most, nearest, isOneOfThree);
+            ASSERT_EQ(nearest.size(), isLimited ? std::min<std::size_t>(count, 2) : count);
+            for (std::size_t i = 0; i < nearest.size(); ++i) {
+                EXPECT_EQ(nearest[i].id, ids[i + (isLimited ? 1 : 0)]);
             }
         }
     }

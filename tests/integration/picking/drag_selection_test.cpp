@@ -158,5 +158,16 @@ TYPED_TEST(DragSelection, BesideTheViewportSelectsNothingAndSaysSo) {
     EXPECT_TRUE(this->selected.empty());
 }
 
+TYPED_TEST(DragSelection, AsksTheFilter) {
+    const auto view = levelView<TypeParam>();
+    const auto isEven = [](ProxyId id) { return id.index % 2 == 0; };
+    select(this->grid, view, {100, 50}, {1380, 770}, this->selected);
+    std::vector<ProxyId> expected = this->selected;
+    std::erase_if(expected, [&](ProxyId id) { return !isEven(id); });
+    EXPECT_LT(expected.size(), this->selected.size());
+    select(this->grid, view, {100, 50}, {1380, 770}, this->selected, Containment::touching, isEven);
+    EXPECT_EQ(this->selected, expected);
+}
+
 }  // namespace
 }  // namespace hashphase::test
