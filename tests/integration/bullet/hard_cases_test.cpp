@@ -5,7 +5,6 @@
 
 #include <demos/stability/bullet_subject.hpp>
 #include <tests/fuzz/property.hpp>
-#include <tests/fuzz/subjects.hpp>
 #include <tests/support/hard_case_check.hpp>
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>

@@ -180,6 +180,18 @@ TYPED_TEST(SurfaceBelow, IsAsExactFarFromTheOrigin) {
     }
 }
 
+TYPED_TEST(SurfaceBelow, IsNoneOnVerticalTrianglesAndThoseWithoutAnArea) {
+    Mesh<TypeParam> mesh;
+    mesh.vertices = {at<TypeParam>(0, 0, 0), at<TypeParam>(4, 0, 0), at<TypeParam>(4, 4, 0),
+                     at<TypeParam>(2, 2, 0)};
+    mesh.indices = {0, 1, 2, 0, 2, 3, 0, 0, 1, 1, 1, 1};
+    const GroundWorld<TypeParam> world(mesh);
+    EXPECT_EQ(world.grid.size(), 4U);
+    for (const double x : {0.0, 1.0, 2.0, 4.0}) {
+        EXPECT_FALSE(world.terrain.surfaceBelow(at<TypeParam>(x, 9, 0)));
+    }
+}
+
 TYPED_TEST(SurfaceBelow, OfBadPointsIsNone) {
     using Limits = std::numeric_limits<TypeParam>;
     Random random(0x5eed2106);
