@@ -2,7 +2,6 @@
 #include <demos/accuracy/accuracy_command.hpp>
 
 #include <demos/accuracy/accuracy_report.hpp>
-#include <demos/accuracy/timing.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
@@ -17,6 +16,10 @@
 #include <filesystem>
 #include <ostream>
 #include <utility>
+
+#if defined(__linux__)
+#include <sched.h>
+#endif
 
 namespace hashphase::demos {
 namespace {
@@ -69,6 +72,20 @@ Experiments chosenExperiments(const std::vector<std::string>& ids,
         }
     }
     return chosen;
+}
+
+/// Keeps this thread on the core where it is: the scheduler moves threads, and caches do not move along.
+void pinToThisCore() {
+#if defined(__linux__)
+    const int core = sched_getcpu();
+    if (core >= 0) {
+        cpu_set_t cores;
+        CPU_ZERO(&cores);
+        CPU_SET(static_cast<unsigned>(core), &cores);
+        // Refused in some containers; the times are then a little less steady.
+        static_cast<void>(sched_setaffinity(0, sizeof(cores), &cores));
+    }
+#endif
 }
 
 // An experiment that cannot go on has not shown what it was to show.
@@ -145,15 +162,6 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
 }
 
 }  // namespace
-
-std::span<const Experiment> experiments() {
-    static const std::vector<Experiment> all{
-        sweepExperiment(),   cellSizeExperiment(), proximityExperiment(), cullingExperiment(),
-        pickingExperiment(), originExperiment(),   timeStepExperiment(),  trajectoryExperiment(),
-        terrainExperiment(), updateExperiment(),
-    };
-    return all;
-}
 
 Subcommand accuracyCommand(std::span<const Experiment> known) {
     return makeSubcommand<AccuracyOptions>("accuracy", declare,

@@ -3,10 +3,8 @@
 
 // `hashphase accuracy`: runs experiments, writes what they found, and says what to choose.
 
-#include <demos/accuracy/experiments.hpp>
+#include <demos/accuracy/experiment.hpp>
 #include <demos/console/program.hpp>
-
-#include <span>
 
 namespace hashphase::demos {
 

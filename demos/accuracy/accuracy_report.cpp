@@ -7,10 +7,8 @@
 #include <demos/report/report_text.hpp>
 #include <demos/report/vega_lite.hpp>
 
-#include <algorithm>
-#include <map>
+#include <array>
 #include <ostream>
-#include <tuple>
 
 namespace hashphase::demos {
 namespace {
@@ -134,29 +132,25 @@ std::vector<std::string> brokenChecks(const AccuracyReport& report) {
 }
 
 DataTable adviceTable(std::span<const Choice> choices) {
-    std::map<std::string, std::size_t> orderOfTask;
-    std::vector<const Choice*> sorted;
+    Measurements all;
+    all.create("choices", {"task", "milliseconds", "method", "result", "error"});
     for (const Choice& each : choices) {
-        orderOfTask.emplace(each.task, orderOfTask.size());
-        sorted.push_back(&each);
+        all.add("choices", {{"task", each.task},
+                            {"milliseconds", each.milliseconds},
+                            {"method", each.method},
+                            {"result", each.result},
+                            {"error", each.error}});
     }
-    const auto rank = [&](const Choice* each) {
-        return std::tuple(orderOfTask[each->task], each->milliseconds, each->error);
-    };
-    std::stable_sort(sorted.begin(), sorted.end(),
-                     [&](const Choice* a, const Choice* b) { return rank(a) < rank(b); });
-    DataTable table{{{"task", "for"},
-                     {"milliseconds", "if you can afford [ms]"},
-                     {"method", "use"},
-                     {"result", "and you get"},
-                     {"error", "error"}},
-                    {}};
-    const Choice* last = nullptr;
-    for (const Choice* each : sorted) {
-        if (last == nullptr || each->task != last->task || each->error < last->error) {
-            table.add({each->task, each->milliseconds, each->method, each->result, each->error});
-            last = each;
-        }
+    DataTable table = all.ask(R"sql(
+        SELECT task, milliseconds, method, result, error FROM (
+            SELECT *, min(rowid) OVER (PARTITION BY task) AS first,
+                   min(error) OVER (PARTITION BY task ORDER BY milliseconds, error, rowid
+                                    ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS least
+            FROM choices ORDER BY first, milliseconds, error, rowid)
+        WHERE least IS NULL OR error < least)sql");
+    constexpr std::array titles{"for", "if you can afford [ms]", "use", "and you get", "error"};
+    for (std::size_t i = 0; i < titles.size(); ++i) {
+        table.columns[i].title = titles[i];
     }
     return table;
 }

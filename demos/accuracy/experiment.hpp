@@ -13,6 +13,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,5 +44,80 @@ struct Experiment {
     double fullSeconds;
     std::function<Findings(const Effort&, const TellProgress&)> run;
 };
+
+// Each in a folder.
+[[nodiscard]] Experiment sweepExperiment();       // P1
+[[nodiscard]] Experiment cellSizeExperiment();    // P2
+[[nodiscard]] Experiment proximityExperiment();   // P3
+[[nodiscard]] Experiment cullingExperiment();     // P4
+[[nodiscard]] Experiment pickingExperiment();     // P5
+[[nodiscard]] Experiment originExperiment();      // P6
+[[nodiscard]] Experiment timeStepExperiment();    // P7
+[[nodiscard]] Experiment trajectoryExperiment();  // P8
+[[nodiscard]] Experiment terrainExperiment();     // P9
+[[nodiscard]] Experiment updateExperiment();      // P10
+
+/// All of them, in that order.
+[[nodiscard]] std::span<const Experiment> experiments();
+
+// --- Methods ---------------------------------------------------------------------------------------
+
+/// A way to do what an experiment is about.
+template <class Make>
+struct Method {
+    std::string name;
+    std::string
+        traits;  // whose it is ("ours", "paper", "bullet", "others"), then words of the experiment
+    std::function<Make> make;
+
+    [[nodiscard]] std::string origin() const { return traits.substr(0, traits.find(' ')); }
+    [[nodiscard]] bool is(std::string_view trait) const {
+        return (' ' + traits + ' ').find(' ' + std::string(trait) + ' ') != std::string::npos;
+    }
+};
+
+/// Adds a row to the table "methods" for each: its number, its name, whose it is, and of each trait
+/// whether it has it.
+template <class Make>
+void addMethods(std::span<const Method<Make>> methods,
+                std::initializer_list<std::string_view> traits, Measurements& measured) {
+    for (const Method<Make>& method : methods) {
+        Record row{{"number", &method - methods.data()},
+                   {"method", method.name},
+                   {"origin", method.origin()},
+                   {"ours", method.is("ours")}};
+        for (const std::string_view trait : traits) {
+            row.emplace_back(trait, method.is(trait));
+        }
+        measured.add("methods", row);
+    }
+}
+
+// --- Times -----------------------------------------------------------------------------------------
+
+/// Fewer different frames than this are no measurement.
+inline constexpr int kFewestFrames = 60;
+
+/// Frames that are timed, after some more that are not.
+struct TimedFrames {
+    int frames = kFewestFrames;
+    int warmUp = 0;
+    double scale = 1;                  // of what is noted to a frame
+    std::string_view table = "times";  // in which
+};
+
+/// A method to be timed, and the columns that name it.
+struct TimedMethod {
+    Record columns;
+    std::function<void()> run;
+};
+
+/// Times methods against each other so that their ratios can be trusted: runs begin(frame) and then all
+/// of them, in an order that rotates, for each of the frames. Adds the time of each, less what other
+/// programs took of the processor meanwhile, on this thread only: a row with the method's columns, and
+/// then "ms".
+void measureTimes(Measurements& measured, const TimedFrames& timed,
+                  const std::function<void(int frame)>& begin,
+                  std::span<const TimedMethod> methods);
 
 }  // namespace hashphase::demos

@@ -7,7 +7,10 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 
+#include <algorithm>
 #include <array>
+#include <stdexcept>
+#include <string>
 
 namespace hashphase::demos {
 namespace {
@@ -67,6 +70,14 @@ constexpr std::array kKinds{
 
 std::span<const BroadphaseKind> broadphaseKinds() {
     return kKinds;
+}
+
+const BroadphaseKind& broadphaseKind(std::string_view name) {
+    const auto* const found = std::ranges::find(kKinds, name, &BroadphaseKind::name);
+    if (found == kKinds.end()) {
+        throw std::logic_error("There is no broadphase '" + std::string(name) + "'.");
+    }
+    return *found;
 }
 
 }  // namespace hashphase::demos

@@ -45,4 +45,7 @@ struct BroadphaseKind {
 /// Ours first, then Bullet's.
 [[nodiscard]] std::span<const BroadphaseKind> broadphaseKinds();
 
+/// The one of that name; throws std::logic_error where there is none.
+[[nodiscard]] const BroadphaseKind& broadphaseKind(std::string_view name);
+
 }  // namespace hashphase::demos

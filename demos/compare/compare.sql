@@ -3,6 +3,12 @@ R"sql(-- SPDX-License-Identifier: Zlib
 -- What `hashphase compare` shows. Measured are: run (one row), broadphases, frames (a row for each frame of
 -- each broadphase) and faults (the first wrong pair of each broadphase that has one).
 
+-- Where no frame was run, or no pair was wrong.
+CREATE TABLE IF NOT EXISTS frames (
+    name, frame, measured, pairs, exact_pairs, missing, extra, stale, set_aabb_ms, calculate_ms, step_ms);
+CREATE TABLE IF NOT EXISTS faults (
+    name, fault_frame, kind, first, second, first_text, second_text, objects_json, boxes_json);
+
 -- Over all frames, warm-up included.
 CREATE TABLE counted AS
 SELECT name, count(*) AS frame_count, sum(pairs) AS pairs, max(pairs) AS most_pairs,
@@ -59,7 +65,7 @@ SELECT scene || ', ' || thousands(objects) || ' ' || noun || ', ' || (frames_don
        removed, (max(frames_done - warm_up, 1) - 1) / 1000 + 1 AS together
 FROM run;
 
-/* {"rows": "verdict"} */
+/* {"verdict": "and whether all pair sets of ours were exact"} */
 SELECT text, exact FROM verdict, exactness;
 
 -- --- On the terminal ------------------------------------------------------------------------------
@@ -110,7 +116,7 @@ FROM results;
 SELECT 'The time limit was reached after ' || frames_done || ' of ' || frames_asked || ' frames.'
 FROM run WHERE limit_hit;
 
-/* {"rows": "correctness"} */
+/* {"sentences": "what is counted", "section": "Are the pairs right?"} */
 SELECT 'The scene: ' || description || '.' FROM run
 UNION ALL
 SELECT 'Sums over all frames. Missing pairs overlap but are not listed, so that bodies fall through each '
@@ -119,17 +125,20 @@ SELECT 'Sums over all frames. Missing pairs overlap but are not listed, so that 
 UNION ALL
 SELECT left_out_sentence FROM results WHERE left_out_after IS NOT NULL;
 
-/* {"checks": "pairs"} */
+/* {"checks": "pairs", "section": "Are the pairs right?"} */
 SELECT '''' || name || ''' lists exactly the pairs that overlap, in every frame', kind IS NULL,
        thousands(missing) || ' missing and ' || thousands(extra) || ' extra in ' || frame_count || ' frames'
 FROM results WHERE ours AND frame_count > 0;
 
-/* {"table": "pairs"} */
+/* {"table": "pairs", "section": "Are the pairs right?"} */
 SELECT name AS broadphase, title AS class, ifnull(pairs, 0) AS "pairs: listed pairs",
        ifnull(missing, 0) AS missing, ifnull(extra, 0) AS extra, ifnull(stale, 0) AS "stale: of these stale"
 FROM results WHERE left_out_after IS NULL;
 
-/* {"table": "times"} */
+/* {"sentences": "the unit", "section": "How long does it take?"} */
+SELECT 'Milliseconds, medians of the timed frames.';
+
+/* {"table": "times", "section": "How long does it take?"} */
 SELECT name AS broadphase, set_aabb AS "set_aabb_ms: setAabb for all", calculate AS "calculate_ms: calculate",
        both AS "both_ms: both", speed AS "speed: times as fast as dbvt", step AS "step_ms: whole step",
        fill_ms AS "fill_ms: creating all objects", remove_ms AS "remove_ms: removing {thousands(removed)}",

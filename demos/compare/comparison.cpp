@@ -28,10 +28,10 @@ Json cornerJson(const Vector3<float>& corner) {
 }
 
 // The first pair that a broadphase got wrong.
-void recordFault(std::string_view name, int frame, const FrameVerdict& verdict,
+void recordFault(std::string_view name, int frame, const PairVerdict& verdict,
                  std::span<const Aabb<float>> boxes, Measurements& measured) {
-    const bool isMissing = verdict.firstMissing.has_value();
-    const PairKey pair = isMissing ? *verdict.firstMissing : *verdict.firstExtra;
+    const bool isMissing = !verdict.missing.empty();
+    const PairKey pair = isMissing ? verdict.missing.front() : verdict.extra.front();
     Json boxesJson = Json::array();
     for (const std::uint32_t object : {firstOf(pair), secondOf(pair)}) {
         boxesJson.push_back(
@@ -48,24 +48,25 @@ void recordFault(std::string_view name, int frame, const FrameVerdict& verdict,
                             {"boxes_json", boxesJson.dump()}});
 }
 
-void record(int frame, bool isTimed, const Observation& seen, Contestant& contestant,
-            Measurements& measured) {
-    const FrameVerdict verdict = contestant.verifier.judge(seen.reported, seen.exact);
+const PairVerdict& record(int frame, bool isTimed, const Observation& seen, Contestant& contestant,
+                          Measurements& measured) {
+    const PairVerdict& verdict = contestant.verifier.judge(seen.reported, seen.exact);
     measured.add("frames", {{"name", contestant.kind->name},
                             {"frame", frame},
                             {"measured", isTimed},
-                            {"pairs", verdict.pairs},
-                            {"exact_pairs", verdict.exactPairs},
-                            {"missing", verdict.missing},
-                            {"extra", verdict.extra},
+                            {"pairs", seen.reported.size()},
+                            {"exact_pairs", seen.exact.size()},
+                            {"missing", verdict.missing.size()},
+                            {"extra", verdict.extra.size()},
                             {"stale", verdict.stale},
                             {"set_aabb_ms", seen.setAabbMs},
                             {"calculate_ms", seen.calculateMs},
                             {"step_ms", seen.stepMs}});
-    if (!contestant.isWrong && verdict.missing + verdict.extra > 0) {
+    if (!contestant.isWrong && !(verdict.missing.empty() && verdict.extra.empty())) {
         contestant.isWrong = true;
         recordFault(contestant.kind->name, frame, verdict, seen.boxes, measured);
     }
+    return verdict;
 }
 
 // Brings its code into memory, so that its filling tells nothing of that.
@@ -78,7 +79,7 @@ void touch(const BroadphaseKind& kind) {
 Contestant fill(Trial& trial, const BroadphaseKind& kind, double seconds,
                 const ComparisonSettings& settings) {
     Progress progress(settings.err, settings.progress, "filling " + std::string(kind.name),
-                      trial.objectCount());
+                      trial.facts.objects);
     touch(kind);
     const Stopwatch watch;
     Contestant contestant;
@@ -131,13 +132,6 @@ void recordEnd(Trial& trial, const ComparisonSettings& settings, std::size_t obj
     }
 }
 
-void createTables(Measurements& measured) {
-    measured.create("frames", {"name", "frame", "measured", "pairs", "exact_pairs", "missing",
-                               "extra", "stale", "set_aabb_ms", "calculate_ms", "step_ms"});
-    measured.create("faults", {"name", "fault_frame", "kind", "first", "second", "first_text",
-                               "second_text", "objects_json", "boxes_json"});
-}
-
 }  // namespace
 
 std::vector<Contestant> fillBroadphases(Trial& trial,
@@ -157,11 +151,10 @@ std::vector<Contestant> fillBroadphases(Trial& trial,
 ComparisonEnd runFrames(Trial& trial, const ComparisonSettings& settings,
                         std::vector<Contestant>& all, ReplayRecording* replay,
                         Measurements& measured) {
-    createTables(measured);
     const std::vector<Contestant*> contestants = filled(all);
     ComparisonEnd end;
     end.warmUpFrames = std::min(kMostWarmUpFrames, settings.frames / 4);
-    end.objectsRemoved = std::min(kObjectsToRemove, (trial.objectCount() + 1) / 2);
+    end.objectsRemoved = std::min(kObjectsToRemove, (trial.facts.objects + 1) / 2);
     const auto frames = static_cast<std::size_t>(settings.frames);
     Progress progress(settings.err, settings.progress, "frame", frames * contestants.size());
 
@@ -175,7 +168,7 @@ ComparisonEnd runFrames(Trial& trial, const ComparisonSettings& settings,
                                                                    withThousands(frames) + ", " +
                                                                    std::string(what));
         };
-        if (trial.sharesBoxes()) {
+        if (trial.facts.sharesBoxes) {
             tell(0, "exact pairs");
         }
         trial.beginFrame();
@@ -186,10 +179,11 @@ ComparisonEnd runFrames(Trial& trial, const ComparisonSettings& settings,
             tell(turn, contestant.kind->name);
             const Observation seen = trial.runFrame(i);
             const int number = static_cast<int>(frame);
-            record(number, number >= end.warmUpFrames, seen, contestant, measured);
+            const PairVerdict& verdict =
+                record(number, number >= end.warmUpFrames, seen, contestant, measured);
             if (isReplayed) {
-                replay->add(i, {seen.boxes, seen.exact, contestant.verifier.missing(),
-                                contestant.verifier.extra(), seen.cellSize});
+                replay->add(
+                    i, {seen.boxes, seen.exact, verdict.missing, verdict.extra, seen.cellSize});
             }
         }
         if (isReplayed) {

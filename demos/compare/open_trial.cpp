@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/open_trial.hpp>
 
-#include <demos/compare/box_trial.hpp>
-#include <demos/compare/world_trial.hpp>
 #include <demos/console/format.hpp>
 #include <demos/scenes/bullet_world_file.hpp>
 #include <demos/scenes/file_bytes.hpp>
@@ -23,7 +21,7 @@ OpenedTrial openScene(const CompareOptions& options, const TellWaiting& tell) {
             auto scene =
                 kind.make(options.objects.value_or(kind.defaultObjects), options.sceneSeed());
             return {std::string(kind.name), std::string(kind.description), std::string(kind.noun),
-                    std::make_unique<BoxTrial>(std::move(scene), options.reference)};
+                    boxTrial(std::move(scene), options.reference)};
         }
         names.emplace_back(kind.name);
     }
@@ -33,7 +31,7 @@ OpenedTrial openScene(const CompareOptions& options, const TellWaiting& tell) {
             auto fill = [fillScene = kind.fill, objects, seed = options.sceneSeed()](
                             WorldContents& contents) { fillScene(contents, objects, seed); };
             return {std::string(kind.name), std::string(kind.description), "bodies",
-                    std::make_unique<WorldTrial>(std::move(fill), options.reference, tell)};
+                    worldTrial(std::move(fill), options.reference, tell)};
         }
         names.emplace_back(kind.name);
     }
@@ -50,7 +48,7 @@ OpenedTrial openTextBoxes(const CompareOptions& options, const TellWaiting& tell
     boxes.resize(objects);
     auto scene = std::make_unique<BrownianScene>(driftingBoxes(boxes), options.sceneSeed());
     return {options.file, "boxes from a text file, drifting", "boxes",
-            std::make_unique<BoxTrial>(std::move(scene), options.reference)};
+            boxTrial(std::move(scene), options.reference)};
 }
 
 OpenedTrial openFile(const CompareOptions& options, const TellWaiting& tell) {
@@ -71,16 +69,15 @@ OpenedTrial openFile(const CompareOptions& options, const TellWaiting& tell) {
         if (!file->omissions().empty()) {
             description += ", without " + file->omissions() + ", which its importer passes over";
         }
-        return {
-            options.file, std::move(description), "bodies",
-            std::make_unique<WorldTrial>([file](WorldContents& contents) { file->fill(contents); },
-                                         options.reference, tell)};
+        return {options.file, std::move(description), "bodies",
+                worldTrial([file](WorldContents& contents) { file->fill(contents); },
+                           options.reference, tell)};
     }
     if (isRecording) {
         auto scene =
             std::make_unique<RecordingScene>(options.file, options.objects.value_or(0), tell);
         return {options.file, "a Broadmark recording", "boxes",
-                std::make_unique<BoxTrial>(std::move(scene), options.reference)};
+                boxTrial(std::move(scene), options.reference)};
     }
     return openTextBoxes(options, tell);
 }

@@ -10,6 +10,8 @@
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/pair_key.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -22,5 +24,16 @@ enum class ReferenceMethod { kSweep, kBrute };
 /// tests every pair.
 void findExactPairs(ReferenceMethod method, std::span<const Aabb<float>> boxes,
                     std::span<const CollisionFilter> filters, std::vector<PairKey>& pairs);
+
+/// How many of the items another list does not have; of an item that comes twice, it must have two. Both
+/// sorted.
+template <class Item>
+[[nodiscard]] std::size_t countMissing(const std::vector<Item>& items,
+                                       const std::vector<Item>& other) {
+    std::vector<Item> missing;
+    std::set_difference(items.begin(), items.end(), other.begin(), other.end(),
+                        std::back_inserter(missing));
+    return missing.size();
+}
 
 }  // namespace hashphase::demos

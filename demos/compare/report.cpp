@@ -25,19 +25,10 @@ void print(const std::vector<std::string>& lines, std::ostream& out) {
     }
 }
 
-std::string verdictOf(const CompareReport& report) {
-    return sentencesOf(report.findings.rows.at("verdict")).front();
-}
-
 }  // namespace
 
 Findings compareFindings(Measurements& measured) {
     return findingsOf(kCompareDeclaration, measured);
-}
-
-std::optional<bool> oursWereExact(const Findings& findings) {
-    const double* exact = std::get_if<double>(&findings.rows.at("verdict").rows.front().at(1));
-    return exact != nullptr ? std::optional(*exact != 0) : std::nullopt;
 }
 
 void printReport(const CompareReport& report, std::ostream& out) {
@@ -49,7 +40,7 @@ void printReport(const CompareReport& report, std::ostream& out) {
     print(sentencesOf(rows.at("explanation")), out);
     out << '\n';
     printTable(withoutEmptyColumns(rows.at("table")), out);
-    out << '\n' << verdictOf(report) << '\n';
+    out << '\n' << report.findings.verdict << '\n';
 }
 
 void writeJson(const CompareReport& report, std::ostream& out) {
@@ -79,23 +70,15 @@ Page pageOf(const CompareReport& report) {
     const Findings& findings = report.findings;
     Page page{"Broadphases compared: " + report.scene,
               kIntroduction,
-              verdictOf(report) + ".",
-              oursWereExact(findings),
-              {},
+              findings.verdict + ".",
+              findings.holds,
+              findings.sections,
               report.provenance};
     for (const std::string& sentence : sentencesOf(findings.rows.at("time limit"))) {
         page.verdict += " " + sentence;
     }
-    PageSection pairs;
-    pairs.heading = "Are the pairs right?";
-    pairs.sentences = sentencesOf(findings.rows.at("correctness"));
-    pairs.checks = findings.checks;
-    pairs.tables = {findings.tables.at(0)};
-    PageSection times;
-    times.heading = "How long does it take?";
-    times.sentences = {"Milliseconds, medians of the timed frames."};
-    times.tables = {withoutEmptyColumns(findings.tables.at(1))};
-    page.sections = {std::move(pairs), std::move(times)};
+    DataTable& times = page.sections.at(1).tables.at(0);
+    times = withoutEmptyColumns(times);
     if (report.wasAnythingTimed) {
         PageSection drawn;
         drawn.heading = "The times, drawn";

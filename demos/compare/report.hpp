@@ -24,12 +24,8 @@ struct CompareReport {
     std::optional<ReplayRecording> replay;  // of the first frames
 };
 
-/// Measured are the run, its broadphases and its frames.
+/// Measured are the run, its broadphases and its frames. All that is checked are the pair sets of ours.
 [[nodiscard]] Findings compareFindings(Measurements& measured);
-
-/// True when no broadphase of ours missed or invented a pair; nothing when none of ours took part, or no
-/// frame was run.
-[[nodiscard]] std::optional<bool> oursWereExact(const Findings& findings);
 
 /// What was run on what, the table, and the verdict.
 void printReport(const CompareReport& report, std::ostream& out);

@@ -8,12 +8,13 @@
 
 #include <demos/compare/broadphase_kind.hpp>
 #include <demos/compare/reference_pairs.hpp>
+#include <demos/scenes/file_bytes.hpp>
+#include <demos/scenes/world_contents.hpp>
 
 #include <algorithm>
-#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
-#include <span>
 
 namespace hashphase::demos {
 
@@ -34,9 +35,17 @@ using GoOn = std::function<bool(std::size_t done)>;
 /// So many objects are dealt with between two calls of GoOn, which look at the clock.
 inline constexpr std::size_t kObjectsBetweenLooks = 64;
 
+/// What is known of a trial from the beginning.
+struct TrialFacts {
+    std::size_t objects = 0;
+    Aabb<float> bounds;                            // where they are; what leaves it is rare
+    bool sharesBoxes = true;                       // all broadphases see the same boxes in a frame
+    std::optional<int> frameLimit = std::nullopt;  // how many frames there are
+};
+
 class Trial {
 public:
-    Trial() = default;
+    explicit Trial(const TrialFacts& itsFacts) : facts(itsFacts) {}
     Trial(const Trial&) = delete;
     Trial& operator=(const Trial&) = delete;
     virtual ~Trial() = default;
@@ -59,17 +68,24 @@ public:
     /// Heap that the broadphase took so far [bytes], where that can be told.
     [[nodiscard]] virtual std::optional<std::int64_t> memoryBytes(std::size_t contestant) const = 0;
 
-    [[nodiscard]] virtual std::size_t objectCount() const = 0;
-
-    /// Where the objects are; what leaves it is rare.
-    [[nodiscard]] virtual Aabb<float> bounds() const = 0;
-
-    /// Whether all broadphases see the same boxes in a frame.
-    [[nodiscard]] virtual bool sharesBoxes() const = 0;
-
-    /// How many frames there are, where that is limited.
-    [[nodiscard]] virtual std::optional<int> frameLimit() const { return std::nullopt; }
+    const TrialFacts facts;
 };
+
+/// Broadphases alone on a scene of moving boxes: in every frame each gets setAabb for all boxes, then
+/// calculateOverlappingPairs.
+[[nodiscard]] std::unique_ptr<Trial> boxTrial(std::unique_ptr<BoxScene> scene,
+                                              ReferenceMethod reference);
+
+/// Fills a world, always with the same contents.
+using FillWorld = std::function<void(WorldContents&)>;
+
+/// Broadphases at work in Bullet worlds: each gets a world of its own with the same contents, stepped at
+/// 1/60 s. The worlds part company with time, so each broadphase is judged by the boxes of its own. Filling
+/// takes the time of the broadphase, and of the boxes of what is put into it: nothing else of the world's;
+/// nothing can be told of removal. Makes one world to learn its size, and tells how far that is. Throws what
+/// `fill` throws.
+[[nodiscard]] std::unique_ptr<Trial> worldTrial(FillWorld fill, ReferenceMethod reference,
+                                                const TellWaiting& tell = {});
 
 /// Replaces `pairs` by what the cache lists, sorted; `objectOf` tells a proxy's object number.
 template <class ObjectOf>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/compare/world_trial.hpp>
-
 #include <demos/compare/filled_broadphase.hpp>
 #include <demos/compare/observed_world.hpp>
+#include <demos/compare/trial.hpp>
 #include <demos/console/format.hpp>
 #include <demos/report/stopwatch.hpp>
+#include <integration/bullet/conversions.hpp>
 
 #include <utility>
 
@@ -23,16 +23,10 @@ btDefaultCollisionConstructionInfo roomyPools() {
 }
 
 Aabb<float> boxOf(const btBroadphaseProxy& proxy) {
-    return {Vector3<float>(proxy.m_aabbMin.x(), proxy.m_aabbMin.y(), proxy.m_aabbMin.z()),
-            Vector3<float>(proxy.m_aabbMax.x(), proxy.m_aabbMax.y(), proxy.m_aabbMax.z())};
+    return toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
 }
 
-/// Ends the filling of a world from within.
-struct FillingStopped {};
-
-}  // namespace
-
-struct WorldTrial::World {
+struct World {
     World(const BroadphaseKind& kind, const BroadphaseNeeds& needs)
         : freesProxies(kind.freesProxies), configuration(roomyPools()), dispatcher(&configuration) {
         HeapMeter construction;
@@ -77,100 +71,119 @@ struct WorldTrial::World {
     double makingMs = 0;  // of the broadphase
 };
 
-WorldTrial::WorldTrial(FillWorld fill, ReferenceMethod reference, const TellWaiting& tell)
-    : fill_(std::move(fill)), reference_(reference) {
-    constexpr BroadphaseKind kTree{
-        {},
-        {},
-        {},
-        false,
-        0,
-        false,
-        [](const BroadphaseNeeds&) -> std::unique_ptr<btBroadphaseInterface> {
-            return std::make_unique<btDbvtBroadphase>();
-        }};
-    World measured(kTree, {});
+/// How many objects there are, and where, with room for what falls and flies.
+TrialFacts factsOf(const FillWorld& fill, const TellWaiting& tell) {
+    World measured(broadphaseKind("dbvt"), {});
     measured.world->setAdditionObserver([&tell](std::size_t bodies) {
         if (tell && bodies % kObjectsBetweenLooks == 0) {
             tell(withThousands(bodies) + " bodies");
         }
     });
-    fill_(*measured.contents);
-
+    fill(*measured.contents);
     const btCollisionObjectArray& objects = measured.world->getCollisionObjectArray();
-    needs_.objects = static_cast<std::size_t>(objects.size());
+    TrialFacts facts{static_cast<std::size_t>(objects.size()), {}, false};
     for (int i = 0; i < objects.size(); ++i) {
         const Aabb<float> box = boxOf(*objects[i]->getBroadphaseHandle());
         // Planes have no end; their boxes would leave an axis sweep no resolution.
         constexpr float kWithoutEnd = 1e15F;
         if (box.min().minCoeff() > -kWithoutEnd && box.max().maxCoeff() < kWithoutEnd) {
-            needs_.bounds.extend(box);
+            facts.bounds.extend(box);
         }
     }
-    // Room for what falls and flies.
     constexpr float kRoom = 100;  // [m]
-    if (needs_.bounds.isEmpty()) {
-        needs_.bounds.extend(Vector3<float>::Zero());
+    if (facts.bounds.isEmpty()) {
+        facts.bounds.extend(Vector3<float>::Zero());
     }
-    needs_.bounds.extend(Vector3<float>(needs_.bounds.min().array() - kRoom));
-    needs_.bounds.extend(Vector3<float>(needs_.bounds.max().array() + kRoom));
+    facts.bounds.extend(Vector3<float>(facts.bounds.min().array() - kRoom));
+    facts.bounds.extend(Vector3<float>(facts.bounds.max().array() + kRoom));
+    return facts;
 }
 
-WorldTrial::~WorldTrial() = default;
+/// Ends the filling of a world from within.
+struct FillingStopped {};
 
-std::optional<double> WorldTrial::add(const BroadphaseKind& kind, const GoOn& goOn) {
-    auto filled = std::make_unique<World>(kind, needs_);
-    filled->world->setAdditionObserver([&goOn](std::size_t bodies) {
-        if (bodies % kObjectsBetweenLooks == 0 && !goOn(bodies)) {
-            throw FillingStopped();
+class WorldTrial final : public Trial {
+public:
+    WorldTrial(FillWorld fill, ReferenceMethod reference, const TellWaiting& tell)
+        : Trial(factsOf(fill, tell)), fill_(std::move(fill)), reference_(reference) {}
+
+    std::optional<double> add(const BroadphaseKind& kind, const GoOn& goOn) override {
+        auto filled = std::make_unique<World>(kind, BroadphaseNeeds{facts.bounds, facts.objects});
+        filled->world->setAdditionObserver([&goOn](std::size_t bodies) {
+            if (bodies % kObjectsBetweenLooks == 0 && !goOn(bodies)) {
+                throw FillingStopped();
+            }
+        });
+        try {
+            fill_(*filled->contents);
+        } catch (const FillingStopped&) {
+            return std::nullopt;
         }
-    });
-    try {
-        fill_(*filled->contents);
-    } catch (const FillingStopped&) {
+        filled->world->setAdditionObserver({});
+        worlds_.push_back(std::move(filled));
+        World& world = *worlds_.back();
+        world.world->setPairObserver([this, &world] { observe(world); });
+        return world.makingMs + world.world->additionMs();
+    }
+
+    void beginFrame() override {}
+
+    Observation runFrame(std::size_t contestant) override {
+        const ObservedWorld::StepTimes times = worlds_[contestant]->world->stepOnce(kStep);
+        Observation seen;
+        seen.setAabbMs = times.updateAabbsMs;
+        seen.calculateMs = times.calculateMs;
+        seen.stepMs = times.wholeMs;
+        seen.reported = reported_;
+        seen.exact = exact_;
+        seen.boxes = boxes_;
+        seen.cellSize = cellSizeOf(*worlds_[contestant]->broadphase);
+        return seen;
+    }
+
+    std::optional<double> removeObjects(std::size_t /*contestant*/, std::size_t /*count*/,
+                                        const GoOn& /*goOn*/) override {
         return std::nullopt;
     }
-    filled->world->setAdditionObserver({});
-    worlds_.push_back(std::move(filled));
-    World& world = *worlds_.back();
-    world.world->setPairObserver([this, &world] { observe(world); });
-    return world.makingMs + world.world->additionMs();
-}
 
-Observation WorldTrial::runFrame(std::size_t contestant) {
-    const ObservedWorld::StepTimes times = worlds_[contestant]->world->stepOnce(kStep);
-    Observation seen;
-    seen.setAabbMs = times.updateAabbsMs;
-    seen.calculateMs = times.calculateMs;
-    seen.stepMs = times.wholeMs;
-    seen.reported = reported_;
-    seen.exact = exact_;
-    seen.boxes = boxes_;
-    seen.cellSize = cellSizeOf(*worlds_[contestant]->broadphase);
-    return seen;
-}
-
-std::optional<std::int64_t> WorldTrial::memoryBytes(std::size_t contestant) const {
-    return std::as_const(*worlds_[contestant]->world).heap().bytes();
-}
-
-void WorldTrial::observe(World& world) {
-    const btCollisionObjectArray& objects = world.world->getCollisionObjectArray();
-    boxes_.clear();
-    filters_.clear();
-    for (int i = 0; i < objects.size(); ++i) {
-        const btBroadphaseProxy& proxy = *objects[i]->getBroadphaseHandle();
-        boxes_.push_back(boxOf(proxy));
-        filters_.push_back({proxy.m_collisionFilterGroup, proxy.m_collisionFilterMask});
+    [[nodiscard]] std::optional<std::int64_t> memoryBytes(std::size_t contestant) const override {
+        return std::as_const(*worlds_[contestant]->world).heap().bytes();
     }
-    findExactPairs(reference_, boxes_, filters_, exact_);
-    listPairs(
-        *world.broadphase->getOverlappingPairCache(),
-        [](const btBroadphaseProxy& proxy) {
-            const auto* object = static_cast<const btCollisionObject*>(proxy.m_clientObject);
-            return static_cast<std::uint32_t>(object->getWorldArrayIndex());
-        },
-        reported_);
+
+private:
+    void observe(World& world) {
+        const btCollisionObjectArray& objects = world.world->getCollisionObjectArray();
+        boxes_.clear();
+        filters_.clear();
+        for (int i = 0; i < objects.size(); ++i) {
+            const btBroadphaseProxy& proxy = *objects[i]->getBroadphaseHandle();
+            boxes_.push_back(boxOf(proxy));
+            filters_.push_back({proxy.m_collisionFilterGroup, proxy.m_collisionFilterMask});
+        }
+        findExactPairs(reference_, boxes_, filters_, exact_);
+        listPairs(
+            *world.broadphase->getOverlappingPairCache(),
+            [](const btBroadphaseProxy& proxy) {
+                const auto* object = static_cast<const btCollisionObject*>(proxy.m_clientObject);
+                return static_cast<std::uint32_t>(object->getWorldArrayIndex());
+            },
+            reported_);
+    }
+
+    FillWorld fill_;
+    ReferenceMethod reference_;
+    std::vector<std::unique_ptr<World>> worlds_;
+    std::vector<Aabb<float>> boxes_;
+    std::vector<CollisionFilter> filters_;
+    std::vector<PairKey> exact_;
+    std::vector<PairKey> reported_;
+};
+
+}  // namespace
+
+std::unique_ptr<Trial> worldTrial(FillWorld fill, ReferenceMethod reference,
+                                  const TellWaiting& tell) {
+    return std::make_unique<WorldTrial>(std::move(fill), reference, tell);
 }
 
 }  // namespace hashphase::demos

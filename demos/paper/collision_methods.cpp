@@ -73,35 +73,19 @@ private:
     std::vector<float> heights_;
 };
 
-/// The height of the triangle at that place of the map, or nothing where the place is beside it. Edges
-/// belong to both sides.
-std::optional<float> heightOf(const TriangleGround& ground, std::size_t triangle, float x,
-                              float z) {
-    constexpr float kEdge = 1e-5F;  // rounding must not lose a point between two triangles
-    const Aabb<float>& box = ground.boxes[triangle];
-    if (x < box.min().x() || x > box.max().x() || z < box.min().z() || z > box.max().z()) {
-        return std::nullopt;
-    }
-    const auto [a, b, c] = ground.corners(triangle);
-    const float abX = b.x() - a.x();
-    const float abZ = b.z() - a.z();
-    const float acX = c.x() - a.x();
-    const float acZ = c.z() - a.z();
-    const float inverseArea = 1 / (abX * acZ - abZ * acX);
-    const float u = ((x - a.x()) * acZ - (z - a.z()) * acX) * inverseArea;
-    const float v = (abX * (z - a.z()) - abZ * (x - a.x())) * inverseArea;
-    if (u < -kEdge || v < -kEdge || u + v > 1 + kEdge) {
-        return std::nullopt;
-    }
-    return a.y() + u * (b.y() - a.y()) + v * (c.y() - a.y());
-}
-
 /// The height of the ground below the centre. No surface is vertical or above another one, so the first
-/// of the triangles that has the place is the answer; 0 where none has.
+/// of the triangles that has the place is the answer; 0 where none has. Edges belong to both sides.
 float groundHeight(const TriangleGround& ground, std::span<const std::uint32_t> triangles,
                    const Vector3<float>& centre) {
+    constexpr float kEdge = 1e-5F;  // rounding must not lose a point between two triangles
+    const float x = centre.x();
+    const float z = centre.z();
     for (const std::uint32_t triangle : triangles) {
-        if (const auto height = heightOf(ground, triangle, centre.x(), centre.z())) {
+        const Aabb<float>& box = ground.boxes[triangle];
+        if (x < box.min().x() || x > box.max().x() || z < box.min().z() || z > box.max().z()) {
+            continue;
+        }
+        if (const auto height = ground.heightAt(triangle, x, z, kEdge)) {
             return *height;
         }
     }
@@ -121,7 +105,7 @@ public:
             for (std::uint32_t b = subjects_.areAll() ? a + 1 : 0; b < boxes.size(); ++b) {
                 // Of two subjects, the first one has seen the pair.
                 if (overlaps(box, boxes[b]) && (b > a || !subjects_.contains(b))) {
-                    keys_.push_back(pairKeyOf(a, b));
+                    keys_.push_back(pairKey(a, b));
                     meet(a, b);
                 }
             }
@@ -150,12 +134,7 @@ public:
 
     void run(const TestBed& bed) override {
         begin(bed);
-        const PaperMap::Range all = spheres_.all();
-        for (int z = all.lowZ; z <= all.highZ; ++z) {
-            for (int x = all.lowX; x <= all.highX; ++x) {
-                collide(x, z, bed.boxes());
-            }
-        }
+        forEachCell(spheres_.all(), [&](int x, int z) { collide(x, z, bed.boxes()); });
     }
 
     void stand(const TestBed& bed) override {
@@ -177,7 +156,7 @@ private:
             const Aabb<float>& a = boxes[bucket[i]];
             for (const std::uint32_t other : bucket.subspan(i + 1)) {
                 if (overlaps(a, boxes[other]) && isHome(x, z, a, boxes[other])) {
-                    keys_.push_back(pairKeyOf(bucket[i], other));
+                    keys_.push_back(pairKey(bucket[i], other));
                     meet(bucket[i], other);
                 }
             }
@@ -242,7 +221,7 @@ public:
     [[nodiscard]] PhaseAnswer answer() const override {
         PhaseAnswer answer = OnGrid::answer();
         for (const auto& [a, b] : current_) {
-            answer.found.push_back(pairKeyOf(a.index, b.index));
+            answer.found.push_back(pairKey(a.index, b.index));
         }
         return answer;
     }

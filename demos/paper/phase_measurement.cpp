@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/paper/phase_measurement.hpp>
 
+#include <demos/compare/reference_pairs.hpp>
 #include <demos/console/format.hpp>
 #include <demos/report/frame_clock.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -29,13 +29,6 @@ PhaseAnswer restricted(Phase phase, const PhaseAnswer& answer, const Subjects& s
         }
     }
     return some;
-}
-
-std::size_t countOfFirstAlone(const std::vector<std::uint64_t>& a,
-                              const std::vector<std::uint64_t>& b) {
-    std::vector<std::uint64_t> alone;
-    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(alone));
-    return alone.size();
 }
 
 /// Heights and velocities come by sums in another order, and from triangles in another precision.
@@ -227,11 +220,63 @@ private:
 
 }  // namespace
 
+std::string_view nameOf(Phase phase) {
+    constexpr std::array<std::string_view, 3> kNames{"collision", "visibility", "AI"};
+    return kNames[static_cast<std::size_t>(phase)];
+}
+
+std::string_view nameOf(MethodKind kind) {
+    constexpr std::array<std::string_view, 3> kNames{"un-optimized", "paper's grid", "hashphase"};
+    return kNames[static_cast<std::size_t>(kind)];
+}
+
+Subjects::Subjects(std::vector<char> isOne) : isOne_(std::move(isOne)) {
+    for (std::uint32_t i = 0; i < isOne_.size(); ++i) {
+        if (contains(i)) {
+            list_.push_back(i);
+        }
+    }
+}
+
+Subjects Subjects::all(std::uint32_t objects) {
+    return Subjects(std::vector<char>(objects, 1));
+}
+
+Subjects Subjects::drawn(std::uint32_t objects, std::uint32_t count, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<char> isOne(objects, 0);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto object = static_cast<std::uint32_t>(random.unit() * static_cast<float>(objects));
+        isOne[std::min(object, objects - 1)] = 1;
+    }
+    return Subjects(std::move(isOne));
+}
+
+std::unique_ptr<PhaseMethod> makeMethod(const MethodPlan& plan, const TestBed& bed,
+                                        Subjects subjects) {
+    constexpr std::array<MakeMethod*, 3> kMakers{makeCollisionMethod, makeVisibilityMethod,
+                                                 makeAiMethod};
+    return kMakers[static_cast<std::size_t>(plan.phase)](plan, bed, std::move(subjects));
+}
+
+std::vector<MethodSpec> figureMethods(std::uint32_t objects) {
+    std::vector<MethodSpec> specs;
+    if (objects <= kMostBruteForced) {
+        specs.push_back({MethodKind::unoptimized, std::nullopt});
+    }
+    for (const double cellSize : kPrintedCellSizes) {
+        specs.push_back({MethodKind::paperGrid, cellSize});
+        specs.push_back({MethodKind::hashphase, cellSize});
+    }
+    specs.push_back({MethodKind::hashphase, std::nullopt});
+    return specs;
+}
+
 std::optional<std::string> faultOf(Phase phase, const PhaseAnswer& answer, const PhaseAnswer& right,
                                    const Subjects& subjects) {
     const PhaseAnswer asked = subjects.areAll() ? answer : restricted(phase, answer, subjects);
-    const std::size_t missing = countOfFirstAlone(right.found, asked.found);
-    const std::size_t extra = countOfFirstAlone(asked.found, right.found);
+    const std::size_t missing = countMissing(right.found, asked.found);
+    const std::size_t extra = countMissing(asked.found, right.found);
     const std::string ofAll = " of " + withThousands(right.found.size());
     if (missing + extra > 0) {
         return phase == Phase::ai

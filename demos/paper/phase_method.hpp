@@ -5,6 +5,7 @@
 
 #include <broadphase/grid.hpp>
 #include <demos/paper/test_bed.hpp>
+#include <demos/scenes/pair_key.hpp>
 
 #include <array>
 #include <functional>
@@ -28,7 +29,7 @@ inline constexpr std::array<double, 5> kPrintedCellSizes{5, 10, 25, 50, 100};  /
 
 /// What a phase found, for comparison with what another method found.
 struct PhaseAnswer {
-    /// Keys, sorted. Collision: pairKeyOf() the two of each overlapping pair. Visibility: keyOf(object,
+    /// Keys, sorted. Collision: pairKey() of the two of each overlapping pair. Visibility: keyOf(object,
     /// object) of each visible one. AI: keyOf(object, its new colour).
     std::vector<std::uint64_t> found;
 
@@ -38,11 +39,6 @@ struct PhaseAnswer {
 
 [[nodiscard]] constexpr std::uint64_t keyOf(std::uint32_t high, std::uint32_t low) noexcept {
     return std::uint64_t{high} << 32 | low;
-}
-
-/// Of two objects, the smaller one first.
-[[nodiscard]] constexpr std::uint64_t pairKeyOf(std::uint32_t a, std::uint32_t b) noexcept {
-    return a < b ? keyOf(a, b) : keyOf(b, a);
 }
 
 /// For whom the slow way is gone: for all, or for some objects drawn at random.

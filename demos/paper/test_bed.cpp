@@ -12,34 +12,15 @@ constexpr float kFramesPerSecond = 60;
 constexpr float kEyeHeight = 45;  // [m]
 constexpr float kPitch = -0.3F;   // [rad]
 constexpr float kTurn = 0.01F;    // [rad] a frame
+constexpr float kQuadEdge = 10;   // of the ground [m]
 
-TriangleGround triangleGround(const Terrain& terrain, float side) {
-    TriangleGround ground;
-    const auto quads = static_cast<std::uint32_t>(std::ceil(side / TriangleGround::kEdge));
-    for (std::uint32_t k = 0; k <= quads; ++k) {
-        for (std::uint32_t i = 0; i <= quads; ++i) {
-            const float x = TriangleGround::kEdge * static_cast<float>(i);
-            const float z = TriangleGround::kEdge * static_cast<float>(k);
-            ground.vertices.emplace_back(x, terrain.height(x, z), z);
-        }
-    }
-    for (std::uint32_t k = 0; k < quads; ++k) {
-        for (std::uint32_t i = 0; i < quads; ++i) {
-            const std::uint32_t corner = k * (quads + 1) + i;
-            const std::uint32_t next = corner + quads + 1;
-            for (const std::uint32_t vertex :
-                 {corner, next, corner + 1, corner + 1, next, next + 1}) {
-                ground.indices.push_back(vertex);
-            }
-        }
-    }
-    ground.boxes.resize(ground.indices.size() / 3);
-    for (std::size_t i = 0; i < ground.boxes.size(); ++i) {
-        for (const Vector3<float>& corner : ground.corners(i)) {
-            ground.boxes[i].extend(corner);
-        }
-    }
-    return ground;
+TriangleGround groundOf(const Terrain& terrain, float side) {
+    return {static_cast<std::uint32_t>(std::ceil(side / kQuadEdge)),
+            [&terrain](std::uint32_t i, std::uint32_t k) -> Vector3<float> {
+                const float x = kQuadEdge * static_cast<float>(i);
+                const float z = kQuadEdge * static_cast<float>(k);
+                return {x, terrain.height(x, z), z};
+            }};
 }
 
 /// The side of the domain of so many objects [m].
@@ -54,7 +35,7 @@ float sideFor(std::uint32_t objects) {
 TestBed::TestBed(std::uint32_t objects, std::uint64_t seed)
     : side_(sideFor(objects)),
       scene_(objects, seed, side_),
-      ground_(triangleGround(Terrain(seed), side_)),
+      ground_(groundOf(Terrain(seed), side_)),
       centres_(objects),
       velocities_(objects),
       colours_(objects) {

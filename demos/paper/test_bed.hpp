@@ -18,20 +18,6 @@
 
 namespace hashphase::demos {
 
-/// The ground as triangles, quads of kEdge cut along a diagonal.
-struct TriangleGround {
-    static constexpr float kEdge = 10;  // [m]
-
-    std::vector<Vector3<float>> vertices;
-    std::vector<std::uint32_t> indices;  // three a triangle
-    std::vector<Aabb<float>> boxes;      // of the triangles
-
-    [[nodiscard]] std::array<Vector3<float>, 3> corners(std::size_t triangle) const {
-        return {vertices[indices[3 * triangle]], vertices[indices[3 * triangle + 1]],
-                vertices[indices[3 * triangle + 2]]};
-    }
-};
-
 class TestBed {
 public:
     static constexpr std::uint32_t kColours = 6;

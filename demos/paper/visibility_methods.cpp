@@ -54,19 +54,16 @@ public:
         : VisibilityMethod(plan, bed, std::move(subjects)),
           map_(bed.domain(), static_cast<float>(plan.cellSize)) {
         const Aabb<float> domain = bed.domain();
-        const PaperMap::Range all = map_.all();
-        for (int z = all.lowZ; z <= all.highZ; ++z) {
-            for (int x = all.lowX; x <= all.highX; ++x) {
-                Aabb<float> box = map_.square(x, z);
-                box.min().y() = domain.min().y();
-                box.max().y() = domain.max().y();
-                // What rounding files in the cell is in its box too.
-                constexpr float kSlack = 0.01F;  // [m]
-                box.min().array() -= kSlack;
-                box.max().array() += kSlack;
-                cells_.push_back({x, z, box});
-            }
-        }
+        forEachCell(map_.all(), [&](int x, int z) {
+            Aabb<float> box = map_.square(x, z);
+            box.min().y() = domain.min().y();
+            box.max().y() = domain.max().y();
+            // What rounding files in the cell is in its box too.
+            constexpr float kSlack = 0.01F;  // [m]
+            box.min().array() -= kSlack;
+            box.max().array() += kSlack;
+            cells_.push_back({x, z, box});
+        });
     }
 
     void hash(const TestBed& bed) override { map_.refile(bed.boxes()); }

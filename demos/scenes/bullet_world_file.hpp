@@ -4,7 +4,7 @@
 // Worlds serialised by Bullet (`.bullet` files), and a check of their outer shape: Bullet's importer trusts every
 // count and length that it reads, so a truncated or damaged file would crash it.
 
-#include <demos/scenes/tell_waiting.hpp>
+#include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/world_contents.hpp>
 
 #include <filesystem>

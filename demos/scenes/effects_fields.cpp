@@ -85,7 +85,7 @@ constexpr CornerField kUpperCorner{kInfinite, [](EffectsFile& file) -> Vector3<d
                                    }};
 
 EffectsField ofEffect(Effect effect, std::string_view meaning) {
-    return {"effects", nameOf(effect), meaning, "", EffectField{effect}};
+    return {"effects", nameOf(effect), meaning, "", ObjectField{effect}};
 }
 
 const std::vector<EffectsField>& allFields() {
@@ -94,7 +94,7 @@ const std::vector<EffectsField>& allFields() {
          TextField{place<&EffectsFile::schema>}},
         {"", "title", "what the scene shows", "", TextField{place<&EffectsFile::title>}},
         {"", "scene", "who is there, where, and for how long: spheres on a square, and zones", "",
-         SectionField{}},
+         ObjectField{}},
         {"scene", "objects", "bodies", "", whole<&EffectsScene::objects>(1, 10'000'000)},
         {"scene", "radius", "of every body", "m", number<&EffectsScene::radius>(0.001, 1000)},
         {"scene", "domain", "side of the square, which begins at (0, 0)", "m",
@@ -113,10 +113,10 @@ const std::vector<EffectsField>& allFields() {
         {"scene", "zones", "zones of interest", "", whole<&EffectsScene::zones>(0, 100'000)},
         {"scene", "frames", "how many are run", "", whole<&EffectsScene::frames>(1, kMostFrames)},
         {"scene", "timeStep", "of a frame", "s", number<&EffectsScene::timeStep>(1e-4, 1)},
-        {"", "effects", "what the scene calls for", "", SectionField{}},
+        {"", "effects", "what the scene calls for", "", ObjectField{}},
         ofEffect(Effect::motion, "bodies go on with their velocities"),
         {"effects.motion", "bounds",
-         "who would leave this box with its centre turns back at its face", "", SectionField{}},
+         "who would leave this box with its centre turns back at its face", "", ObjectField{}},
         {"effects.motion.bounds", "min", "lower corner of the box; none: open on that side", "m",
          kLowerCorner},
         {"effects.motion.bounds", "max", "upper corner of the box; none: open on that side", "m",
@@ -178,7 +178,7 @@ const std::vector<EffectsField>& allFields() {
          whole<&RadarEffect::frames>(1, kMostFrames)},
         {"effects.radar", "up", "the axis that points upwards", "",
          choice<&RadarEffect::up>(kUpAxes)},
-        {"", "grid", "of the grid, which exists when an effect asks it", "", SectionField{}},
+        {"", "grid", "of the grid, which exists when an effect asks it", "", ObjectField{}},
         {"grid", "cellSize",
          "edge of the finest cells, from 1e-30; 0: chosen from the bodies' sizes", "m",
          number<&GridConfig::cellSize>(0, 1e30)},
@@ -231,9 +231,9 @@ std::string numberText(double number) {
 }
 
 std::string requirementOf(const EffectsField& field) {
-    std::string requirement = "an object";
-    if (std::holds_alternative<EffectField>(field.kind)) {
-        requirement = "true, false or an object of settings";
+    std::string requirement;
+    if (const auto* object = std::get_if<ObjectField>(&field.kind)) {
+        requirement = object->effect ? "true, false or an object of settings" : "an object";
     } else if (std::holds_alternative<TextField>(field.kind)) {
         requirement = "a text";
     } else if (const auto* number = std::get_if<NumberField>(&field.kind)) {

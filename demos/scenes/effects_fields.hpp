@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,12 +18,9 @@ namespace hashphase::demos {
 /// What stands in a file for a number without a bound.
 inline constexpr std::string_view kNoBound = "none";
 
-/// An object of further fields.
-struct SectionField {};
-
-/// true, false, or an object of further fields.
-struct EffectField {
-    Effect effect;
+/// An object of further fields; of an effect, also true or false.
+struct ObjectField {
+    std::optional<Effect> effect = std::nullopt;
 };
 
 struct TextField {
@@ -61,8 +59,7 @@ struct CornerField {
     Vector3<double>& (*place)(EffectsFile&);
 };
 
-using FieldKind =
-    std::variant<SectionField, EffectField, TextField, NumberField, ChoiceField, CornerField>;
+using FieldKind = std::variant<ObjectField, TextField, NumberField, ChoiceField, CornerField>;
 
 struct EffectsField {
     std::string_view section;  // the path of the object that it is in; empty for the file itself

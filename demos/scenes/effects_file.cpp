@@ -23,15 +23,11 @@ bool hasNoBound(const JsonValue& value) {
 }
 
 /// Each returns false when the value is not what the field must be.
-bool assign(const SectionField& /*field*/, const JsonValue& value, EffectsFile& /*file*/) {
-    return value.kind == Kind::object;
-}
-
-bool assign(const EffectField& field, const JsonValue& value, EffectsFile& file) {
-    if (value.kind == Kind::object || value.truth) {
-        file.effects.declare(field.effect);
+bool assign(const ObjectField& field, const JsonValue& value, EffectsFile& file) {
+    if (field.effect && (value.kind == Kind::object || value.truth)) {
+        file.effects.declare(*field.effect);
     }
-    return value.kind == Kind::object || value.kind == Kind::boolean;
+    return value.kind == Kind::object || (field.effect && value.kind == Kind::boolean);
 }
 
 bool assign(const TextField& field, const JsonValue& value, EffectsFile& file) {

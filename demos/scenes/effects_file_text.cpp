@@ -32,10 +32,7 @@ Json membersOf(const Subject& section);
 Json rulesOf(const Subject& section);
 
 /// What the field holds.
-Json valueOf(const SectionField& /*field*/, const Subject& of) {
-    return membersOf(of);
-}
-Json valueOf(const EffectField& /*field*/, const Subject& of) {
+Json valueOf(const ObjectField& /*field*/, const Subject& of) {
     return membersOf(of);
 }
 Json valueOf(const TextField& field, const Subject& of) {
@@ -54,11 +51,8 @@ Json valueOf(const CornerField& field, const Subject& of) {
 }
 
 /// What the schema says about the field's value, which the file holds by default.
-Json ruleOf(const SectionField& /*field*/, const Subject& of) {
-    return {{"type", "object"}, {"properties", rulesOf(of)}, {"additionalProperties", false}};
-}
-Json ruleOf(const EffectField& /*field*/, const Subject& of) {
-    return {{"type", {"boolean", "object"}},
+Json ruleOf(const ObjectField& field, const Subject& of) {
+    return {{"type", field.effect ? Json{"boolean", "object"} : Json("object")},
             {"properties", rulesOf(of)},
             {"additionalProperties", false}};
 }
@@ -92,8 +86,8 @@ Json ruleOf(const CornerField& field, const Subject& of) {
 }
 
 bool isLeftOut(const EffectsField& field, const Subject& of) {
-    if (const auto* effect = std::get_if<EffectField>(&field.kind)) {
-        return !of.file.effects.set().contains(effect->effect);
+    if (const auto* object = std::get_if<ObjectField>(&field.kind)) {
+        return object->effect && !of.file.effects.set().contains(*object->effect);
     }
     const auto* text = std::get_if<TextField>(&field.kind);
     return text != nullptr && text->place(of.file).empty();
@@ -149,7 +143,7 @@ std::string effectsFileSchema() {
     }
     Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                 {"title", "A scene of effects"}};
-    schema.update(ruleOf(SectionField{}, {defaults, ""}));
+    schema.update(ruleOf(ObjectField{}, {defaults, ""}));
     return textOf(schema);
 }
 

@@ -5,10 +5,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
 namespace hashphase::demos {
+
+/// Called many times with what is being done for somebody who waits for a file or a scene: "reading frame 3
+/// of 100". Empty: nobody waits.
+using TellWaiting = std::function<void(std::string_view what)>;
 
 /// Of what is read as a whole [bytes].
 inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 30;

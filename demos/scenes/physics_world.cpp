@@ -2,6 +2,7 @@
 #include <demos/scenes/physics_world.hpp>
 
 #include <demos/scenes/ordered_dispatcher.hpp>
+#include <demos/scenes/result_hash.hpp>
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
@@ -55,26 +56,19 @@ std::unique_ptr<PairCache> makeCache(ListOrder order) {
                               : nullptr;
 }
 
-/// FNV-1a, by Fowler, Noll and Vo.
-class BitHash {
-public:
-    void add(btScalar number) {
-        std::array<unsigned char, sizeof(number)> bytes{};
-        std::memcpy(bytes.data(), &number, sizeof(number));
-        for (const unsigned char byte : bytes) {
-            value_ = (value_ ^ byte) * 0x100000001b3U;
-        }
+void add(btScalar number, ResultHash& hash) {
+    std::array<unsigned char, sizeof(number)> bytes{};
+    std::memcpy(bytes.data(), &number, sizeof(number));
+    for (const unsigned char byte : bytes) {
+        hash.add(std::uint64_t{byte});
     }
-    void add(const btVector3& vector) {
-        for (int axis = 0; axis < 3; ++axis) {
-            add(vector[axis]);
-        }
-    }
-    [[nodiscard]] std::uint64_t value() const { return value_; }
+}
 
-private:
-    std::uint64_t value_ = 0xcbf29ce484222325U;
-};
+void add(const btVector3& vector, ResultHash& hash) {
+    for (int axis = 0; axis < 3; ++axis) {
+        add(vector[axis], hash);
+    }
+}
 
 }  // namespace
 
@@ -138,16 +132,16 @@ int PhysicsWorld::sleepingCount() const {
 }
 
 std::uint64_t stateHash(const WorldContents& contents) {
-    BitHash hash;
+    ResultHash hash;
     for (const auto& body : contents.bodies()) {
         const btTransform& place = body->getWorldTransform();
         for (int row = 0; row < 3; ++row) {
-            hash.add(place.getBasis()[row]);
+            add(place.getBasis()[row], hash);
         }
-        hash.add(place.getOrigin());
-        hash.add(body->getLinearVelocity());
-        hash.add(body->getAngularVelocity());
-        hash.add(static_cast<btScalar>(body->getActivationState()));
+        add(place.getOrigin(), hash);
+        add(body->getLinearVelocity(), hash);
+        add(body->getAngularVelocity(), hash);
+        add(static_cast<btScalar>(body->getActivationState()), hash);
     }
     return hash.value();
 }

@@ -8,7 +8,7 @@
 // four floats each, of which the fourth is padding.
 
 #include <demos/scenes/box_scene.hpp>
-#include <demos/scenes/tell_waiting.hpp>
+#include <demos/scenes/file_bytes.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -56,4 +56,31 @@ float Terrain::latticeValue(std::int32_t i, std::int32_t k, std::uint32_t octave
     return static_cast<float>(bits >> 40) * 0x1p-24F;
 }
 
+TriangleGround::TriangleGround(
+    std::uint32_t quads,
+    const std::function<Vector3<float>(std::uint32_t i, std::uint32_t k)>& vertexAt) {
+    for (std::uint32_t k = 0; k <= quads; ++k) {
+        for (std::uint32_t i = 0; i <= quads; ++i) {
+            vertices.push_back(vertexAt(i, k));
+            if (i < quads && k < quads) {
+                const std::uint32_t a = k * (quads + 1) + i;
+                const std::uint32_t c = a + quads + 1;
+                indices.insert(indices.end(), {a, c, a + 1, a + 1, c, c + 1});
+            }
+        }
+    }
+    boxes.resize(indices.size() / 3);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        boxes[i / 3].extend(vertices[indices[i]]);
+    }
+}
+
+Aabb<float> TriangleGround::bounds() const {
+    Aabb<float> bounds;
+    for (const Vector3<float>& vertex : vertices) {
+        bounds.extend(vertex);
+    }
+    return bounds;
+}
+
 }  // namespace hashphase::demos

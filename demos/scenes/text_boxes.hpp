@@ -5,7 +5,7 @@
 // and lines that begin with # are skipped, and so is the byte-order mark of UTF-8.
 
 #include <demos/scenes/brownian_scene.hpp>
-#include <demos/scenes/tell_waiting.hpp>
+#include <demos/scenes/file_bytes.hpp>
 
 #include <filesystem>
 #include <string_view>

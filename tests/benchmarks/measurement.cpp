@@ -189,11 +189,12 @@ FrameAudit auditAnswers(std::vector<Answer>& answers, const std::vector<Answer>&
     const auto end = std::unique(answers.begin(), answers.end());
     audit.duplicates = static_cast<std::size_t>(answers.end() - end);
     answers.erase(end, answers.end());
-    const demos::FrameVerdict verdict = demos::Verifier().judge(answers, exact);
-    audit.missing = verdict.missing;
-    audit.extra = verdict.extra;
-    audit.fault = verdict.firstMissing ? answerText("missed", *verdict.firstMissing)
-                  : verdict.firstExtra ? answerText("reported in excess", *verdict.firstExtra)
+    demos::Verifier verifier;
+    const demos::PairVerdict& verdict = verifier.judge(answers, exact);
+    audit.missing = verdict.missing.size();
+    audit.extra = verdict.extra.size();
+    audit.fault = audit.missing > 0 ? answerText("missed", verdict.missing.front())
+                  : audit.extra > 0 ? answerText("reported in excess", verdict.extra.front())
                   : audit.duplicates > 0
                       ? "reported " + std::to_string(audit.duplicates) + " answers again"
                       : "";

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy_command.hpp>
+#include <demos/accuracy/accuracy_report.hpp>
+#include <demos/scenes/file_bytes.hpp>
 #include <tests/demos/sample_experiments.hpp>
 #include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
@@ -7,14 +9,14 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <iterator>
+#include <array>
 #include <stdexcept>
 
 namespace hashphase::demos {
 namespace {
 
-Typed run(const std::vector<std::string>& arguments,
-          const std::vector<Experiment>& experiments = sampleExperiments()) {
+Typed runAccuracy(const std::vector<std::string>& arguments,
+                  const std::vector<Experiment>& experiments = sampleExperiments()) {
     return typed(accuracyCommand(experiments), arguments);
 }
 
@@ -29,25 +31,16 @@ Experiment experimentOf(std::string_view id, std::function<Findings(const Effort
             }};
 }
 
-std::string contentOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-bool holds(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
-
 TEST(Accuracy, SaysWhatItLeftOutForWantOfTime) {
-    EXPECT_TRUE(holds(run({"--time-limit", "1e-9"}).out,
+    EXPECT_TRUE(holds(runAccuracy({"--time-limit", "1e-9"}).out,
                       "\n0 experiments, 0 checks: all hold; left out for want of time: S1, S2\n"));
-    EXPECT_EQ(run({"--time-limit", "nan"}).exitCode, kExitUsage);
+    EXPECT_EQ(runAccuracy({"--time-limit", "nan"}).exitCode, kExitUsage);
 }
 
 TEST(Accuracy, EndsWithAVerdict) {
-    const Typed ran = run({});
+    const Typed ran = runAccuracy({});
     EXPECT_EQ(ran.exitCode, kExitOk) << ran.err;
-    EXPECT_TRUE(holds(ran.out, "\n2 experiments, 1 check: all hold\n")) << ran.out;
+    EXPECT_TRUE(holds(ran.out, "\n2 experiments, 1 check: all hold\n"));
     EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing (0 of 1,000,000)\n"));
     EXPECT_TRUE(holds(ran.out, "  Sweeping along a line costs twice as much"));
     EXPECT_TRUE(holds(ran.out, "misses nothing      0\n")) << "the advice";
@@ -55,7 +48,7 @@ TEST(Accuracy, EndsWithAVerdict) {
 }
 
 TEST(Accuracy, ListsTheExperiments) {
-    const Typed ran = run({"--list"});
+    const Typed ran = runAccuracy({"--list"});
     EXPECT_EQ(ran.exitCode, kExitOk);
     EXPECT_EQ(ran.out,
               "  S1   Samples: What do charts look like?\n"
@@ -63,28 +56,28 @@ TEST(Accuracy, ListsTheExperiments) {
 }
 
 TEST(Accuracy, RunsOnlyWhatIsAskedFor) {
-    const Typed ran = run({"--only", "S2"});
+    const Typed ran = runAccuracy({"--only", "S2"});
     EXPECT_EQ(ran.exitCode, kExitOk);
-    EXPECT_TRUE(holds(ran.out, "1 experiment, 0 checks: all hold")) << ran.out;
-    EXPECT_FALSE(holds(ran.out, "S1")) << ran.out;
+    EXPECT_TRUE(holds(ran.out, "1 experiment, 0 checks: all hold"));
+    EXPECT_FALSE(holds(ran.out, "S1"));
 }
 
 TEST(Accuracy, SuggestsTheNearestNameOfAnUnknownExperiment) {
-    const Typed ran = run({"--only", "S1,S22"});
+    const Typed ran = runAccuracy({"--only", "S1,S22"});
     EXPECT_EQ(ran.exitCode, kExitUsage);
     EXPECT_EQ(ran.err, "hashphase: There is no experiment 'S22'; did you mean 'S2'?\n");
     EXPECT_EQ(ran.out, "");
 }
 
 TEST(Accuracy, FailsAndNamesTheCheckThatIsBroken) {
-    const Typed ran = run({}, {experimentOf("B1", [](const Effort& /*effort*/) {
-                              Findings findings;
-                              findings.checks = {{"One is one", true, "1 of 1"},
-                                                 {"Nothing is missed", false, "3 of 10"}};
-                              return findings;
-                          })});
+    const Typed ran = runAccuracy({}, {experimentOf("B1", [](const Effort& /*effort*/) {
+                                      Findings findings;
+                                      findings.checks = {{"One is one", true, "1 of 1"},
+                                                         {"Nothing is missed", false, "3 of 10"}};
+                                      return findings;
+                                  })});
     EXPECT_EQ(ran.exitCode, kExitCheckFailed);
-    EXPECT_TRUE(holds(ran.out, "  BROKEN  Nothing is missed (3 of 10)\n")) << ran.out;
+    EXPECT_TRUE(holds(ran.out, "  BROKEN  Nothing is missed (3 of 10)\n"));
     EXPECT_TRUE(holds(ran.out,
                       "1 experiment, 2 checks: 1 BROKEN\n"
                       "B1: Nothing is missed (3 of 10)\n"));
@@ -95,10 +88,10 @@ TEST(Accuracy, CountsAnExperimentThatThrowsAsBrokenAndRunsTheOthers) {
         "T1",
         [](const Effort& /*effort*/) -> Findings { throw std::runtime_error("out of luck"); })};
     experiments.push_back(sampleExperiments().front());
-    const Typed ran = run({}, experiments);
+    const Typed ran = runAccuracy({}, experiments);
     EXPECT_EQ(ran.exitCode, kExitCheckFailed);
-    EXPECT_TRUE(holds(ran.out, "T1: The experiment comes to its end (out of luck)\n")) << ran.out;
-    EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing")) << ran.out;
+    EXPECT_TRUE(holds(ran.out, "T1: The experiment comes to its end (out of luck)\n"));
+    EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing"));
 }
 
 TEST(Accuracy, PassesEffortAndSeedOn) {
@@ -107,19 +100,19 @@ TEST(Accuracy, PassesEffortAndSeedOn) {
         seen = effort;
         return Findings{};
     })};
-    run({"--quick", "--seed", "42"}, experiments);
+    runAccuracy({"--quick", "--seed", "42"}, experiments);
     EXPECT_TRUE(seen.isQuick);
     EXPECT_EQ(seen.seed, 42U);
     EXPECT_EQ(seen.quickOrFull(1, 2), 1);
-    EXPECT_EQ(run({"--seed", "-1"}, experiments).exitCode, kExitUsage);
+    EXPECT_EQ(runAccuracy({"--seed", "-1"}, experiments).exitCode, kExitUsage);
 }
 
 TEST(Accuracy, WritesAPageAndItsDataToAFolder) {
     const TemporaryFolder folder;
     const std::string output = folder.file("new/report");
-    ASSERT_EQ(run({"--output", output, "--quick"}).exitCode, kExitOk);
+    ASSERT_EQ(runAccuracy({"--output", output, "--quick"}).exitCode, kExitOk);
 
-    const auto findings = nlohmann::json::parse(contentOf(output + "/S1.json"));
+    const auto findings = nlohmann::json::parse(readFile(output + "/S1.json"));
     EXPECT_EQ(findings["schema"], "hashphase-accuracy");
     EXPECT_EQ(findings["experiment"], "S1");
     EXPECT_EQ(findings["quick"], true);
@@ -128,18 +121,18 @@ TEST(Accuracy, WritesAPageAndItsDataToAFolder) {
     EXPECT_EQ(findings["choices"].size(), 3U);
     EXPECT_EQ(findings["charts"].size(), sampleCharts().size());
     EXPECT_TRUE(findings["charts"][1]["data"]["rows"].back()[1].is_null()) << "not measured";
-    EXPECT_EQ(nlohmann::json::parse(contentOf(output + "/S2.json"))["experiment"], "S2");
+    EXPECT_EQ(nlohmann::json::parse(readFile(output + "/S2.json"))["experiment"], "S2");
 
     for (const Chart& chart : sampleCharts()) {
-        const std::string csv = contentOf(output + "/" + chart.name + ".csv");
+        const std::string csv = readFile(output + "/" + chart.name + ".csv");
         EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), chart.data.rows.size() + 1);
-        const auto drawn = nlohmann::json::parse(contentOf(output + "/" + chart.name + ".vl.json"));
+        const auto drawn = nlohmann::json::parse(readFile(output + "/" + chart.name + ".vl.json"));
         EXPECT_EQ(drawn["title"]["text"][0].get<std::string>().substr(0, 4),
                   chart.title.substr(0, 4));
     }
     EXPECT_TRUE(
-        holds(contentOf(output + "/advice.csv"), "Fast movers,2,Sweep::line,misses nothing,0\n"));
-    const std::string page = contentOf(output + "/accuracy.html");
+        holds(readFile(output + "/advice.csv"), "Fast movers,2,Sweep::line,misses nothing,0\n"));
+    const std::string page = readFile(output + "/accuracy.html");
     EXPECT_LT(page.find("2 experiments, 1 check: all hold"), page.find("What to choose</h2>"));
     EXPECT_LT(page.find("What to choose</h2>"), page.find("S1 Samples</h2>"));
     EXPECT_TRUE(holds(page, "--quick, which measures less; seed 1."));
@@ -147,13 +140,13 @@ TEST(Accuracy, WritesAPageAndItsDataToAFolder) {
 
 TEST(Accuracy, NamesBrokenChecksOnTopOfThePage) {
     const TemporaryFolder folder;
-    run({"--output", folder.file("r")}, {experimentOf("B1", [](const Effort& /*effort*/) {
-            Findings findings;
-            findings.checks = {{"Nothing is missed", false, "3 < 10"}};
-            return findings;
-        })});
+    runAccuracy({"--output", folder.file("r")}, {experimentOf("B1", [](const Effort& /*effort*/) {
+                    Findings findings;
+                    findings.checks = {{"Nothing is missed", false, "3 < 10"}};
+                    return findings;
+                })});
     EXPECT_TRUE(
-        holds(contentOf(folder.file("r/accuracy.html")),
+        holds(readFile(folder.file("r/accuracy.html")),
               "<p class=\"verdict bad\">1 experiment, 1 check: 1 BROKEN. BROKEN: B1: Nothing "
               "is missed (3 &lt; 10).</p>"));
 }
@@ -166,15 +159,61 @@ TEST(Accuracy, RefusesAFolderThatCannotBeWrittenBeforeItMeasures) {
         return Findings{};
     })};
     const std::string file = folder.write("file", "");
-    const Typed below = run({"--output", file + "/r"}, experiments);
+    const Typed below = runAccuracy({"--output", file + "/r"}, experiments);
     EXPECT_EQ(below.exitCode, kExitUsage);
-    EXPECT_TRUE(holds(below.err, file + "/r cannot be made: ")) << below.err;
+    EXPECT_TRUE(holds(below.err, file + "/r cannot be made: "));
     std::filesystem::create_directories(folder.file("taken/accuracy.html"));
-    const Typed taken = run({"--output", folder.file("taken")}, experiments);
+    const Typed taken = runAccuracy({"--output", folder.file("taken")}, experiments);
     EXPECT_EQ(taken.exitCode, kExitUsage);
     EXPECT_EQ(taken.err,
               "hashphase: " + folder.file("taken") + "/accuracy.html is a folder, not a file.\n");
     EXPECT_FALSE(measured);
+}
+
+// --- Advice ---
+
+Choice choice(const std::string& task, const std::string& method, double milliseconds,
+              double error) {
+    return {task, method, milliseconds, error, "error of " + method, true};
+}
+
+/// The methods that the table advises.
+std::vector<std::string> frontOf(const std::vector<Choice>& choices) {
+    const DataTable table = adviceTable(choices);
+    std::vector<std::string> methods;
+    for (const std::vector<Value>& row : table.rows) {
+        methods.push_back(valueText(row[table.columnOf("method")]));
+    }
+    return methods;
+}
+
+using Methods = std::vector<std::string>;
+
+TEST(Advice, LeavesOutWhatIsSlowerAndWorse) {
+    EXPECT_EQ(frontOf({choice("t", "exact", 4, 0), choice("t", "slow and bad", 5, 0.1),
+                       choice("t", "fast", 1, 0.5), choice("t", "as fast, worse", 1, 0.6),
+                       choice("t", "slower, as bad", 2, 0.5), choice("t", "between", 3, 0.2)}),
+              (Methods{"fast", "between", "exact"}));
+}
+
+TEST(Advice, KeepsTheFirstOfEquals) {
+    EXPECT_EQ(frontOf({choice("t", "one", 1, 0), choice("t", "other", 1, 0)}), (Methods{"one"}));
+}
+
+TEST(Advice, LetsOnlyChoicesOfOneTaskCompete) {
+    EXPECT_EQ(
+        frontOf({choice("b", "slow", 9, 1), choice("a", "fast", 1, 0), choice("b", "quick", 8, 1)}),
+        (Methods{"quick", "fast"}));
+    EXPECT_EQ(frontOf({}), Methods{});
+}
+
+TEST(Advice, IsARowForEachChoiceThatIsLeft) {
+    const DataTable table = adviceTable(std::vector{
+        choice("t", "fast", 1, 0.5), choice("t", "exact", 2, 0), choice("t", "useless", 3, 0)});
+    ASSERT_EQ(table.rows.size(), 2U);
+    EXPECT_EQ(table.rows[1][table.columnOf("method")], Value("exact"));
+    EXPECT_EQ(table.rows[1][table.columnOf("milliseconds")], Value(2.0));
+    EXPECT_EQ(table.rows[1][table.columnOf("result")], Value("error of exact"));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/compare_command.hpp>
+#include <demos/compare/trial.hpp>
+#include <demos/report/stopwatch.hpp>
 #include <tests/demos/bullet_file.hpp>
 #include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
@@ -8,13 +10,14 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
-#include <sstream>
+#include <chrono>
+#include <thread>
 
 namespace hashphase::demos {
 namespace {
 
-Typed run(const std::vector<std::string>& arguments,
-          std::span<const BroadphaseKind> kinds = broadphaseKinds()) {
+Typed runCompare(const std::vector<std::string>& arguments,
+                 std::span<const BroadphaseKind> kinds = broadphaseKinds()) {
     return typed(arguments, std::array{compareCommand(kinds)});
 }
 
@@ -61,10 +64,24 @@ class InventsOnePair : public Broken {
     }
 };
 
+// Takes a millisecond for each object, and more on a slow machine.
+class SlowToFill : public btSimpleBroadphase {
+public:
+    using btSimpleBroadphase::btSimpleBroadphase;
+
+    btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shapeType,
+                                   void* client, int group, int mask,
+                                   btDispatcher* dispatcher) override {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        return btSimpleBroadphase::createProxy(low, high, shapeType, client, group, mask,
+                                               dispatcher);
+    }
+};
+
 template <class Kind>
-BroadphaseKind kindOf(bool ours) {
-    return {"broken",
-            "a broken one",
+BroadphaseKind kindOf(bool ours, std::string_view name = "broken") {
+    return {name,
+            "one for tests",
             "for tests",
             ours,
             1'000'000,
@@ -78,15 +95,15 @@ BroadphaseKind kindOf(bool ours) {
 const std::string kThreeBoxes = "0 0 0 1 1 1\n0 0 0 1 1 1.1\n50 50 50 51 51 51\n";
 
 TEST(Compare, EndsWithAVerdictThatTheSetsAreExact) {
-    const Typed outcome = run({"compare", "--objects", "300", "--frames", "12"});
+    const Typed outcome = runCompare({"compare", "--objects", "300", "--frames", "12"});
     EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.out << outcome.err;
     const std::size_t lastLine = outcome.out.rfind('\n', outcome.out.size() - 2) + 1;
     const std::string verdict = outcome.out.substr(lastLine);
-    EXPECT_EQ(verdict.rfind("300 spheres, 12 frames: hashphase ", 0), 0U) << verdict;
+    EXPECT_TRUE(verdict.starts_with("300 spheres, 12 frames: hashphase ")) << verdict;
     EXPECT_NE(verdict.find("; pair sets exact in every frame: yes\n"), std::string::npos);
     for (const char* name :
          {"\nhash ", "\ndbvt ", "\ndbvt-deferred ", "\naxis-sweep ", "\nsimple "}) {
-        EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
+        EXPECT_TRUE(holds(outcome.out, name));
     }
 }
 
@@ -94,10 +111,10 @@ class CompareScene : public testing::TestWithParam<const char*> {};
 
 TEST_P(CompareScene, IsExactByEitherReference) {
     for (const char* reference : {"sweep", "brute"}) {
-        const Typed outcome = run({"compare", "--scene", GetParam(), "--objects", "150", "--frames",
-                                   "30", "--reference", reference});
+        const Typed outcome = runCompare({"compare", "--scene", GetParam(), "--objects", "150",
+                                          "--frames", "30", "--reference", reference});
         EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.out << outcome.err;
-        EXPECT_NE(outcome.out.find("every frame: yes"), std::string::npos) << outcome.out;
+        EXPECT_TRUE(holds(outcome.out, "every frame: yes"));
     }
 }
 
@@ -114,8 +131,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, CompareScene,
 TEST(Compare, FailsAndNamesTheFirstMissedPair) {
     const TemporaryFolder folder;
     const std::array kinds{kindOf<MissesOnePair>(true)};
-    const Typed outcome =
-        run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
+    const Typed outcome = runCompare(
+        {"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed);
     EXPECT_NE(outcome.out.find("pair sets exact in every frame: NO: 'broken' first missed the pair "
                                "0, 1 in frame 3; box 0 is ["),
@@ -126,15 +143,13 @@ TEST(Compare, FailsAndNamesTheFirstMissedPair) {
 TEST(Compare, FailsAndNamesTheFirstInventedPair) {
     const TemporaryFolder folder;
     const std::array kinds{kindOf<InventsOnePair>(true)};
-    const std::string json = folder.file("r.json");
-    const Typed outcome = run(
-        {"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6", "--json", json},
+    const std::string file = folder.file("r.json");
+    const Typed outcome = runCompare(
+        {"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6", "--json", file},
         kinds);
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed);
-    EXPECT_NE(outcome.out.find("'broken' first reported in excess the pair 0, 2 in frame 3"),
-              std::string::npos)
-        << outcome.out;
-    const auto report = nlohmann::json::parse(std::ifstream(json));
+    EXPECT_TRUE(holds(outcome.out, "'broken' first reported in excess the pair 0, 2 in frame 3"));
+    const auto report = nlohmann::json::parse(std::ifstream(file));
     EXPECT_EQ(report["verdict"]["exact"], false);
     EXPECT_EQ(report["broadphases"][0]["extra"]["total"], 3);
     EXPECT_EQ(report["broadphases"][0]["firstFault"]["kind"], "extra");
@@ -144,18 +159,18 @@ TEST(Compare, FailsAndNamesTheFirstInventedPair) {
 TEST(Compare, DoesNotFailForWhatOthersGetWrong) {
     const TemporaryFolder folder;
     const std::array kinds{kindOf<MissesOnePair>(false)};
-    const Typed outcome =
-        run({"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
+    const Typed outcome = runCompare(
+        {"compare", "--file", folder.write("b.txt", kThreeBoxes), "--frames", "6"}, kinds);
     EXPECT_EQ(outcome.exitCode, kExitOk);
-    EXPECT_NE(outcome.out.find("none of ours took part"), std::string::npos);
+    EXPECT_TRUE(holds(outcome.out, "none of ours took part"));
 }
 
 TEST(Compare, ShowsTheStalePairsOfTheTree) {
     const TemporaryFolder folder;
-    const std::string json = folder.file("r.json");
-    run({"compare", "--scene", "uniform", "--objects", "1000", "--frames", "30", "--broadphases",
-         "dbvt", "--json", json});
-    const auto report = nlohmann::json::parse(std::ifstream(json));
+    const std::string file = folder.file("r.json");
+    runCompare({"compare", "--scene", "uniform", "--objects", "1000", "--frames", "30",
+                "--broadphases", "dbvt", "--json", file});
+    const auto report = nlohmann::json::parse(std::ifstream(file));
     EXPECT_EQ(report["broadphases"][0]["missing"]["total"], 0);
     EXPECT_GT(report["broadphases"][0]["stale"]["total"], 0);
     EXPECT_TRUE(report["verdict"]["exact"].is_null());
@@ -164,8 +179,8 @@ TEST(Compare, ShowsTheStalePairsOfTheTree) {
 TEST(Compare, WritesJsonWithARowForEveryFrame) {
     const TemporaryFolder folder;
     const std::string path = folder.file("r.json");
-    ASSERT_EQ(run({"compare", "--scene", "uniform", "--objects", "100", "--frames", "8",
-                   "--broadphases", "hash,dbvt", "--seed", "9", "--json", path})
+    ASSERT_EQ(runCompare({"compare", "--scene", "uniform", "--objects", "100", "--frames", "8",
+                          "--broadphases", "hash,dbvt", "--seed", "9", "--json", path})
                   .exitCode,
               kExitOk);
     const auto report = nlohmann::json::parse(std::ifstream(path));
@@ -187,8 +202,8 @@ TEST(Compare, WritesJsonWithARowForEveryFrame) {
 TEST(Compare, WritesCsvWithALineForEveryFrameOfEveryBroadphase) {
     const TemporaryFolder folder;
     const std::string path = folder.file("r.csv");
-    run({"compare", "--scene", "stack", "--objects", "20", "--frames", "5", "--broadphases",
-         "hash,simple", "--csv", path});
+    runCompare({"compare", "--scene", "stack", "--objects", "20", "--frames", "5", "--broadphases",
+                "hash,simple", "--csv", path});
     std::ifstream file(path);
     std::vector<std::string> lines;
     for (std::string line; std::getline(file, line);) {
@@ -196,50 +211,45 @@ TEST(Compare, WritesCsvWithALineForEveryFrameOfEveryBroadphase) {
         lines.push_back(line);
     }
     ASSERT_EQ(lines.size(), 11U);
-    EXPECT_EQ(lines[0].rfind("broadphase,frame,", 0), 0U);
-    EXPECT_EQ(lines[6].rfind("simple,0,", 0), 0U);
+    EXPECT_TRUE(lines[0].starts_with("broadphase,frame,"));
+    EXPECT_TRUE(lines[6].starts_with("simple,0,"));
     EXPECT_NE(lines[6].back(), ',') << "a dynamics scene has step times";
 }
 
 TEST(Compare, WritesAPageWithTheVerdictFirst) {
     const TemporaryFolder folder;
     const std::string path = folder.file("r.html");
-    const Typed outcome = run({"compare", "--objects", "50", "--frames", "8", "--html", path});
+    const Typed outcome =
+        runCompare({"compare", "--objects", "50", "--frames", "8", "--html", path});
     ASSERT_EQ(outcome.exitCode, kExitOk) << outcome.err;
-    std::ostringstream page;
-    page << std::ifstream(path).rdbuf();
-    const std::string html = page.str();
+    const std::string html = readFile(path);
     const std::size_t verdict = html.find("pair sets exact in every frame: yes.</p>");
     EXPECT_LT(verdict, html.find("Are the pairs right?</h2>"));
     EXPECT_NE(html.find(">holds</span><span>&#39;hash&#39; lists exactly the pairs"),
               std::string::npos);
-    EXPECT_NE(html.find("id=\"compare-times\""), std::string::npos);
-    EXPECT_NE(html.find("id=\"compare-trace\""), std::string::npos);
-    EXPECT_EQ(html.find("whole step"), std::string::npos) << "boxes have no simulation";
+    EXPECT_TRUE(holds(html, "id=\"compare-times\""));
+    EXPECT_TRUE(holds(html, "id=\"compare-trace\""));
+    EXPECT_FALSE(holds(html, "whole step")) << "boxes have no simulation";
 }
 
 TEST(Compare, WritesAPageWithoutChartsWhereNothingWasTimed) {
     const TemporaryFolder folder;
     const std::string path = folder.file("r.html");
-    run({"compare", "--objects", "2000", "--time-limit", "0.000001", "--broadphases", "hash",
-         "--html", path});
-    std::ostringstream page;
-    page << std::ifstream(path).rdbuf();
-    EXPECT_EQ(page.str().find("id=\"compare-times\""), std::string::npos);
-    EXPECT_NE(page.str().find("The time limit was reached after 0 of 120 frames."),
-              std::string::npos);
-    EXPECT_EQ(page.str().find("class=\"verdict bad\""), std::string::npos) << "nothing was wrong";
-    EXPECT_EQ(page.str().find("class=\"verdict\""), std::string::npos) << "nor was it checked";
+    runCompare({"compare", "--objects", "2000", "--time-limit", "0.000001", "--broadphases", "hash",
+                "--html", path});
+    const std::string page = readFile(path);
+    EXPECT_FALSE(holds(page, "id=\"compare-times\""));
+    EXPECT_TRUE(holds(page, "The time limit was reached after 0 of 120 frames."));
+    EXPECT_FALSE(holds(page, "class=\"verdict bad\"")) << "nothing was wrong";
+    EXPECT_FALSE(holds(page, "class=\"verdict\"")) << "nor was it checked";
 }
 
 TEST(Compare, DrawsManyFramesTogether) {
     const TemporaryFolder folder;
     const std::string path = folder.file("r.html");
-    run({"compare", "--objects", "3", "--frames", "2511", "--broadphases", "hash,dbvt", "--html",
-         path, "--replay-frames", "0", "--csv", folder.file("r.csv")});
-    std::ostringstream page;
-    page << std::ifstream(path).rdbuf();
-    const std::string html = page.str();
+    runCompare({"compare", "--objects", "3", "--frames", "2511", "--broadphases", "hash,dbvt",
+                "--html", path, "--replay-frames", "0", "--csv", folder.file("r.csv")});
+    const std::string html = readFile(path);
     const std::size_t trace = html.find("id=\"compare-trace\"");
     ASSERT_NE(trace, std::string::npos);
     EXPECT_NE(html.find("median of 3 frames, from the least to the most", trace),
@@ -250,9 +260,7 @@ TEST(Compare, DrawsManyFramesTogether) {
         ++rows;
     }
     EXPECT_EQ(rows, 1 + 2 * 834U) << "2,501 frames were timed";
-    std::ostringstream csv;
-    csv << std::ifstream(folder.file("r.csv")).rdbuf();
-    const std::string text = csv.str();
+    const std::string text = readFile(folder.file("r.csv"));
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 2 * 2511) << "all of them";
 }
 
@@ -260,7 +268,8 @@ TEST(Compare, RefusesResultFilesThatCannotBeWritten) {
     const TemporaryFolder folder;
     const std::string path = folder.file("none/r");
     for (const char* option : {"--json", "--csv", "--html"}) {
-        const Typed outcome = run({"compare", "--objects", "10", "--frames", "1", option, path});
+        const Typed outcome =
+            runCompare({"compare", "--objects", "10", "--frames", "1", option, path});
         EXPECT_EQ(outcome.exitCode, kExitUsage);
         EXPECT_EQ(outcome.err, "hashphase: " + path + " cannot be written.\n");
         EXPECT_EQ(outcome.out, "");
@@ -273,12 +282,12 @@ TEST(Compare, ReadsARecordingToItsEndAndNoFurther) {
     bytes[256] = 1;  // object
     bytes[260] = 2;  // frames
     const std::string path = folder.write("r.aabbs", bytes);
-    const Typed outcome = run({"compare", "--file", path});
+    const Typed outcome = runCompare({"compare", "--file", path});
     EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
-    EXPECT_NE(outcome.out.find("1 boxes, 3 frames"), std::string::npos) << outcome.out;
-    EXPECT_EQ(run({"compare", "--file", path, "--frames", "4"}).err,
+    EXPECT_TRUE(holds(outcome.out, "1 boxes, 3 frames"));
+    EXPECT_EQ(runCompare({"compare", "--file", path, "--frames", "4"}).err,
               "hashphase: " + path + " holds 3 frames, but 4 were asked for.\n");
-    EXPECT_EQ(run({"compare", "--file", path, "--seed", "7"}).err,
+    EXPECT_EQ(runCompare({"compare", "--file", path, "--seed", "7"}).err,
               "hashphase: --seed is for scenes and boxes as text; no seed changes " + path + ".\n");
 }
 
@@ -286,55 +295,114 @@ TEST(Compare, ReadsARecordingToItsEndAndNoFurther) {
 TEST(Compare, RunsAWorldFromAFileInEveryBroadphase) {
     const TemporaryFolder folder;
     const std::string path = folder.write("w.bullet", serialisedWorld(6));
-    const Typed outcome = run({"compare", "--file", path, "--frames", "20"});
+    const Typed outcome = runCompare({"compare", "--file", path, "--frames", "20"});
     EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
-    EXPECT_NE(outcome.out.find("6 bodies, 20 frames: "), std::string::npos) << outcome.out;
-    const Typed capitals =
-        run({"compare", "--file", folder.write("W.BULLET", serialisedWorld(6)), "--frames", "2"});
-    EXPECT_NE(capitals.out.find("6 bodies, 2 frames: "), std::string::npos) << capitals.err;
-    EXPECT_EQ(run({"compare", "--file", path, "--objects", "3"}).exitCode, kExitUsage);
+    EXPECT_TRUE(holds(outcome.out, "6 bodies, 20 frames: "));
+    const Typed capitals = runCompare(
+        {"compare", "--file", folder.write("W.BULLET", serialisedWorld(6)), "--frames", "2"});
+    EXPECT_TRUE(holds(capitals.out, "6 bodies, 2 frames: "));
+    EXPECT_EQ(runCompare({"compare", "--file", path, "--objects", "3"}).exitCode, kExitUsage);
 }
 #endif
 
 TEST(Compare, StopsAtTheTimeLimitAndSaysSo) {
-    const Typed outcome = run({"compare", "--objects", "100", "--frames", "1000000", "--time-limit",
-                               "1", "--broadphases", "hash"});
+    const Typed outcome = runCompare({"compare", "--objects", "100", "--frames", "1000000",
+                                      "--time-limit", "1", "--broadphases", "hash"});
     EXPECT_EQ(outcome.exitCode, kExitOk);
-    EXPECT_NE(outcome.out.find("The time limit of 1 s was reached after "), std::string::npos)
-        << outcome.out;
+    EXPECT_TRUE(holds(outcome.out, "The time limit of 1 s was reached after "));
 }
 
 TEST(Compare, ReportsNothingMeasuredWhenTheTimeLimitLeavesNoFrame) {
     const TemporaryFolder folder;
-    const std::string json = folder.file("r.json");
-    const Typed outcome = run({"compare", "--objects", "2000", "--time-limit", "0.000001",
-                               "--broadphases", "hash,dbvt", "--json", json});
+    const std::string file = folder.file("r.json");
+    const Typed outcome = runCompare({"compare", "--objects", "2000", "--time-limit", "0.000001",
+                                      "--broadphases", "hash,dbvt", "--json", file});
     EXPECT_EQ(outcome.exitCode, kExitCheckFailed) << "nothing was verified";
-    EXPECT_NE(outcome.out.find("not verified: no frame was run"), std::string::npos) << outcome.out;
-    const auto report = nlohmann::json::parse(std::ifstream(json));
+    EXPECT_TRUE(holds(outcome.out, "not verified: no frame was run"));
+    const auto report = nlohmann::json::parse(std::ifstream(file));
     EXPECT_TRUE(report["broadphases"][0]["bothMs"].is_null());
     EXPECT_TRUE(report["verdict"]["exact"].is_null());
 }
 
+class CompareSlowToFill : public testing::TestWithParam<const char*> {};
+
+// 4,000 objects take it 4 seconds at least; of the 4 that there are it may have one.
+TEST_P(CompareSlowToFill, IsLeftOutAndTheOthersAreCompared) {
+    const TemporaryFolder folder;
+    const std::array kinds{kindOf<SlowToFill>(false, "slow"), broadphaseKinds()[0]};
+    const std::string file = folder.file("r.json");
+    const std::string html = folder.file("r.html");
+    const Typed outcome = runCompare(
+        {"compare", "--scene", GetParam(), "--objects", "4000", "--frames", "1", "--time-limit",
+         "4", "--json", file, "--html", html, "--csv", folder.file("r.csv")},
+        kinds);
+    EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.out << outcome.err;
+    EXPECT_TRUE(holds(outcome.out, "\nslow: left out, filling 4,00"));
+    EXPECT_TRUE(holds(outcome.out, "every frame: yes"));
+    const auto report = nlohmann::json::parse(std::ifstream(file));
+    EXPECT_TRUE(report["broadphases"][0]["fillMs"].is_null());
+    EXPECT_GT(report["broadphases"][0]["leftOutAfterSeconds"], 0);
+    EXPECT_TRUE(report["broadphases"][0]["frames"].empty());
+    EXPECT_GT(report["broadphases"][1]["fillMs"], 0);
+    EXPECT_EQ(report["broadphases"][1]["frames"].size(), 1U);
+    EXPECT_TRUE(holds(readFile(html), "slow: left out, filling 4,00"));
+}
+
+INSTANTIATE_TEST_SUITE_P(BoxesAndWorlds, CompareSlowToFill, testing::Values("uniform", "pile"));
+
+TEST(Compare, FailsWhenOursIsNotFilledInTime) {
+    const std::array kinds{kindOf<SlowToFill>(true, "slow"), broadphaseKinds()[1]};
+    const Typed outcome =
+        runCompare({"compare", "--objects", "2000", "--frames", "1", "--time-limit", "2"}, kinds);
+    EXPECT_EQ(outcome.exitCode, kExitCheckFailed) << outcome.out;
+    EXPECT_TRUE(holds(outcome.out, "none of ours took part"));
+}
+
+TEST(Compare, TellsHowLongTheBroadphaseTakesToBeFilledAndNotHowLongTheWorldDoes) {
+    const std::unique_ptr<Trial> trial = worldTrial(
+        [](WorldContents& contents) {
+            auto& ball = contents.addShape<btSphereShape>(btScalar(1));
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            contents.addBody(ball, 1, btVector3(0, 0, 0));
+        },
+        ReferenceMethod::kSweep);
+    const Stopwatch watch;
+    const std::optional<double> filled =
+        trial->add(broadphaseKinds()[0], [](std::size_t) { return true; });
+    ASSERT_TRUE(filled.has_value());
+    EXPECT_GT(*filled, 0);
+    EXPECT_LE(*filled, watch.milliseconds() - 50);
+}
+
+TEST(Compare, SaysFromTheBeginningWhatIsBeingDone) {
+    const Typed outcome =
+        typed({"compare", "--objects", "300", "--frames", "4", "--broadphases", "hash,dbvt"},
+              std::array{compareCommand()}, true);
+    for (const char* said : {"filling hash: 0 of 300", "filling dbvt: 0 of 300",
+                             "frame: 1 of 4, exact pairs", "removing from dbvt: 0 of 150"}) {
+        EXPECT_TRUE(holds(outcome.err, said));
+    }
+}
+
 TEST(CommandLine, ListsScenesAndBroadphases) {
-    const Typed outcome = run({"compare", "--list"});
+    const Typed outcome = runCompare({"compare", "--list"});
     EXPECT_EQ(outcome.exitCode, kExitOk);
     for (const char* name : {"paper ", "static-city ", "axis-sweep ", "hash "}) {
-        EXPECT_NE(outcome.out.find(std::string("\n  ") + name), std::string::npos) << name;
+        EXPECT_TRUE(holds(outcome.out, std::string("\n  ") + name));
     }
 }
 
 TEST(CommandLine, ShowsHelpAndVersion) {
-    EXPECT_EQ(run({"--help"}).exitCode, kExitOk);
-    EXPECT_NE(run({"--help"}).out.find("compare"), std::string::npos);
-    EXPECT_NE(run({"compare", "--help"}).out.find("--time-limit"), std::string::npos);
-    EXPECT_EQ(run({"--version"}).out.rfind("hashphase ", 0), 0U);
-    EXPECT_EQ(run({}).exitCode, kExitUsage);
+    EXPECT_EQ(runCompare({"--help"}).exitCode, kExitOk);
+    EXPECT_TRUE(holds(runCompare({"--help"}).out, "compare"));
+    EXPECT_TRUE(holds(runCompare({"compare", "--help"}).out, "--time-limit"));
+    EXPECT_TRUE(runCompare({"--version"}).out.starts_with("hashphase "));
+    EXPECT_EQ(runCompare({}).exitCode, kExitUsage);
 }
 
 TEST(CommandLine, SuggestsTheNearNameForEveryKindOfWord) {
     const auto errorOf = [](const std::vector<std::string>& arguments) {
-        const Typed outcome = run(arguments);
+        const Typed outcome = runCompare(arguments);
         EXPECT_EQ(outcome.exitCode, kExitUsage) << outcome.out;
         return outcome.err;
     };
@@ -365,9 +433,9 @@ TEST(CommandLine, RefusesValuesOutOfRangeAndOptionsThatExcludeEachOther) {
              {"compare", "--file", "/nonexistent/x.txt"},
              {"compare", "--file", "/nonexistent/x.bullet"},
              {"compare", "--file", "/nonexistent/x.aabbs"}}) {
-        const Typed outcome = run(arguments);
+        const Typed outcome = runCompare(arguments);
         EXPECT_EQ(outcome.exitCode, kExitUsage) << testing::PrintToString(arguments) << outcome.out;
-        EXPECT_EQ(outcome.err.rfind("hashphase: ", 0), 0U) << outcome.err;
+        EXPECT_TRUE(outcome.err.starts_with("hashphase: ")) << outcome.err;
     }
 }
 

@@ -96,8 +96,7 @@ TEST(EffectsSchema, DescribesEveryField) {
         ASSERT_TRUE(schema.contains(SchemaJson::json_pointer(place))) << place;
         const SchemaJson& rule = schema[SchemaJson::json_pointer(place)];
         EXPECT_EQ(rule["description"].get<std::string>().rfind(field.meaning, 0), 0U) << place;
-        const bool hasFields = std::holds_alternative<SectionField>(field.kind) ||
-                               std::holds_alternative<EffectField>(field.kind);
+        const bool hasFields = std::holds_alternative<ObjectField>(field.kind);
         EXPECT_NE(rule.contains("properties"), rule.contains("default")) << place;
         EXPECT_EQ(rule.contains("properties"), hasFields) << place;
         EXPECT_TRUE(hasFields || isValid(rule["default"], rule)) << place;

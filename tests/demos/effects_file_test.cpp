@@ -155,10 +155,11 @@ TEST(EffectsFile, OfTheExamplesIsReadAndWritten) {
 TEST(EffectsFile, HasAFieldForEveryEffect) {
     EffectSet effects;
     for (const EffectsField& field : effectsFields()) {
-        if (const auto* effect = std::get_if<EffectField>(&field.kind)) {
-            EXPECT_EQ(field.name, nameOf(effect->effect));
+        const auto* object = std::get_if<ObjectField>(&field.kind);
+        if (object != nullptr && object->effect) {
+            EXPECT_EQ(field.name, nameOf(*object->effect));
             EXPECT_EQ(field.section, "effects");
-            effects.insert(effect->effect);
+            effects.insert(*object->effect);
         }
     }
     EXPECT_EQ(effects, EffectSet::all());

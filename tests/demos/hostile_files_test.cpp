@@ -53,8 +53,8 @@ void expectRefused(const std::string& path, const std::string& why = {}) {
 
 TEST(HostileFiles, ThatAreNoneAreRefused) {
     const TemporaryFolder folder;
-    expectRefused(folder.file("none"), "cannot be opened for reading");
-    expectRefused(folder.file(""));
+    expectRefused(folder.file("none"), folder.file("none") + " cannot be opened for reading.");
+    expectRefused(folder.file(""), folder.file("") + " is a folder, not a file.");
     expectRefused(folder.write("empty", ""));
 }
 

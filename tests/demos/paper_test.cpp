@@ -2,6 +2,7 @@
 #include <demos/paper/paper.hpp>
 #include <demos/paper/paper_command.hpp>
 #include <demos/report/json_values.hpp>
+#include <demos/scenes/file_bytes.hpp>
 #include <tests/demos/asked.hpp>
 #include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
@@ -9,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <iterator>
 
 namespace hashphase::demos {
 namespace {
@@ -135,10 +135,9 @@ TEST(PaperPhases, FailTheRunWhenAMethodIsBroken) {
         EXPECT_EQ(exitCodeOf(report), kExitCheckFailed);
         const Check& check = report.findings.sections.at(0).checks.at(0);
         EXPECT_FALSE(check.holds);
-        EXPECT_NE(check.evidence.find("of 1,500, hashphase, automatic cells: 1 of "),
-                  std::string::npos)
+        EXPECT_TRUE(holds(check.evidence, "of 1,500, hashphase, automatic cells: 1 of "))
             << check.evidence;
-        EXPECT_NE(report.findings.verdict.find("NO, see above"), std::string::npos);
+        EXPECT_TRUE(holds(report.findings.verdict, "NO, see above"));
     }
 }
 
@@ -180,7 +179,7 @@ TEST(PaperPhases, AreNotCheckedAndHoldNoBytesWhereNoFrameWasMeasured) {
         "12 0 0");
     EXPECT_EQ(report.findings.holds, std::nullopt);
     EXPECT_EQ(exitCodeOf(report), kExitCheckFailed);
-    EXPECT_NE(report.findings.verdict.find("brute force: not checked"), std::string::npos);
+    EXPECT_TRUE(holds(report.findings.verdict, "brute force: not checked"));
     // What was not compared is no check.
     ASSERT_EQ(report.findings.sections.at(0).checks.size(), 1U);
     EXPECT_EQ(report.findings.sections[0].checks[0].evidence, "7 pairs touch");
@@ -301,11 +300,6 @@ Typed runPaperCommand(const std::vector<std::string>& arguments) {
     return typed(paperCommand(), arguments);
 }
 
-std::string contentsOfPaperFile(const std::string& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(PaperCommand, WritesTheFiguresAsTextJsonCsvAndPage) {
     const TemporaryFolder folder;
     const std::string json = folder.file("paper.json");
@@ -315,9 +309,9 @@ TEST(PaperCommand, WritesTheFiguresAsTextJsonCsvAndPage) {
                                           "--json", json, "--csv", csv, "--html", html, "--quiet"});
     EXPECT_EQ(output.exitCode, kExitOk) << output.out << output.err;
     EXPECT_EQ(output.err, "");
-    EXPECT_NE(output.out.find("Figure 15, AI: frames a second"), std::string::npos);
-    EXPECT_NE(output.out.find("the same as brute force: yes\n"), std::string::npos);
-    const Json read = Json::parse(contentsOfPaperFile(json));
+    EXPECT_TRUE(holds(output.out, "Figure 15, AI: frames a second"));
+    EXPECT_TRUE(holds(output.out, "the same as brute force: yes\n"));
+    const Json read = Json::parse(readFile(json));
     for (const auto& [pointer, value] : {std::pair<const char*, Json>{"/schema", "hashphase-paper"},
                                          {"/schemaVersion", 1},
                                          {"/checks/0/holds", true},
@@ -337,9 +331,8 @@ TEST(PaperCommand, WritesTheFiguresAsTextJsonCsvAndPage) {
     EXPECT_TRUE(read["realTime"]["AI"]["grid"].contains("paperToday"));
     EXPECT_EQ(read["neighboursByRadius"].size(), 5U);
     EXPECT_EQ(read["boundingVolumes"].size(), 3U);
-    EXPECT_EQ(contentsOfPaperFile(csv).rfind("part,figure,phase,objects,method,cell_m,", 0), 0U);
-    EXPECT_NE(contentsOfPaperFile(html).find("<td class=\"number good\">60+</td>"),
-              std::string::npos);
+    EXPECT_TRUE(readFile(csv).starts_with("part,figure,phase,objects,method,cell_m,"));
+    EXPECT_TRUE(holds(readFile(html), "<td class=\"number good\">60+</td>"));
 }
 
 TEST(PaperCommand, LeavesOutWhatTheTimeLimitDoesNotAllowAndClaimsNothing) {
@@ -347,10 +340,9 @@ TEST(PaperCommand, LeavesOutWhatTheTimeLimitDoesNotAllowAndClaimsNothing) {
     const std::string json = folder.file("paper.json");
     const Typed output = runPaperCommand({"--time-limit", "1e-9", "--json", json, "--quiet"});
     EXPECT_EQ(output.exitCode, kExitCheckFailed) << output.err;
-    EXPECT_NE(output.out.find("Left out for want of time: collision of 50,000, hashphase\n"),
-              std::string::npos);
-    EXPECT_NE(output.out.find("the same as brute force: not checked\n"), std::string::npos);
-    const Json read = Json::parse(contentsOfPaperFile(json));
+    EXPECT_TRUE(holds(output.out, "Left out for want of time: collision of 50,000, hashphase\n"));
+    EXPECT_TRUE(holds(output.out, "the same as brute force: not checked\n"));
+    const Json read = Json::parse(readFile(json));
     EXPECT_TRUE(read["checks"][0].at("holds").is_null());
 }
 

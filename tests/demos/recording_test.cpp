@@ -139,15 +139,5 @@ TEST(Recording, IsRefusedForInvertedBoxesAndNamesTheAxis) {
               "byte 304: object 0 of state 0 is inverted: its max z is below its min.");
 }
 
-TEST(Recording, IsRefusedWhenThereIsNoFile) {
-    const TemporaryFolder folder;
-    const auto faultOf = [](const std::string& path) {
-        return messageOf<InputError>([&path] { const RecordingScene scene(path, 0); });
-    };
-    const std::string none = folder.file("none.aabbs");
-    EXPECT_EQ(faultOf(none), none + " cannot be opened for reading.");
-    EXPECT_EQ(faultOf(folder.file("")), folder.file("") + " is a folder, not a file.");
-}
-
 }  // namespace
 }  // namespace hashphase::demos

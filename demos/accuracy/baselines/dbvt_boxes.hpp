@@ -1,51 +1,32 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Boxes that stand still in Bullet's default broadphase, its trees as good as Bullet can make them;
-// and rays cast at a broadphase of Bullet's.
+// Boxes that stand still in Bullet's default broadphase, and rays cast at a broadphase of Bullet's.
 
-#include <demos/scenes/box_scene.hpp>
-#include <integration/bullet/conversions.hpp>
+#include <demos/compare/filled_broadphase.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
-#include <cstdint>
-#include <span>
-#include <vector>
-
 namespace hashphase::demos {
 
-class DbvtBoxes {
-public:
-    /// Objects are the boxes' numbers. Static geometry pairs with nothing, and pairs are not asked
-    /// for.
-    explicit DbvtBoxes(std::span<const Aabb<float>> boxes) {
-        for (const Aabb<float>& box : boxes) {
-            proxies_.push_back(broadphase_.createProxy(
-                toBullet(box.min()), toBullet(box.max()), BOX_SHAPE_PROXYTYPE, this,
-                kStaticFilter.group, kStaticFilter.mask, nullptr));
-        }
-        broadphase_.optimize();
-    }
-    DbvtBoxes(const DbvtBoxes&) = delete;
-    DbvtBoxes& operator=(const DbvtBoxes&) = delete;
-    ~DbvtBoxes() {
-        for (btBroadphaseProxy* proxy : proxies_) {
-            broadphase_.destroyProxy(proxy, nullptr);
-        }
-    }
+[[nodiscard]] inline btDbvtBroadphase& dbvtOf(const FilledBroadphase& filled) {
+    return dynamic_cast<btDbvtBroadphase&>(filled.broadphase());
+}
 
-    [[nodiscard]] btDbvtBroadphase& broadphase() noexcept { return broadphase_; }
-
-    /// Unique ids count up from 1.
-    [[nodiscard]] static std::uint32_t objectOf(const btBroadphaseProxy& proxy) {
-        return static_cast<std::uint32_t>(proxy.m_uniqueId - 1);
+/// Objects are the boxes' numbers; its trees are as good as Bullet can make them. Static geometry pairs
+/// with nothing, and pairs are not asked for.
+[[nodiscard]] inline std::shared_ptr<FilledBroadphase> filedInDbvt(
+    std::span<const Aabb<float>> boxes) {
+    const auto filled = std::make_shared<FilledBroadphase>(
+        broadphaseKind("dbvt"), BroadphaseNeeds{Aabb<float>(), boxes.size()});
+    std::vector<BulletBox> converted;
+    toBulletBoxes(boxes, converted);
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        filled->create(i, converted[i], kStaticFilter);
     }
-
-private:
-    std::vector<btBroadphaseProxy*> proxies_;
-    btDbvtBroadphase broadphase_;
-};
+    dbvtOf(*filled).optimize();
+    return filled;
+}
 
 /// Calls visit(proxy) of all whose boxes the ray meets, with what btCollisionWorld::rayTest() tells
 /// the broadphase beforehand.

@@ -41,8 +41,7 @@ PaperMap::PaperMap(std::span<const Aabb<float>> boxes, float cellSize)
 void PaperMap::refile(std::span<const Aabb<float>> boxes) {
     index_.resize(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-        const Aabb<float>& box = boxes[i];
-        index_[i] = range(box.min().x(), box.min().z(), box.max().x(), box.max().z());
+        index_[i] = range(boxes[i]);
     }
     fillBuckets();
 }
@@ -59,12 +58,7 @@ void PaperMap::refile(std::span<const Vector3<float>> points) {
 template <class Visit>
 void PaperMap::forEachEntry(const Visit& visit) const {
     for (std::uint32_t i = 0; i < index_.size(); ++i) {
-        const Range& cells = index_[i];
-        for (int z = cells.lowZ; z <= cells.highZ; ++z) {
-            for (int x = cells.lowX; x <= cells.highX; ++x) {
-                visit(bucketOf(x, z), i);
-            }
-        }
+        forEachCell(index_[i], [&](int x, int z) { visit(bucketOf(x, z), i); });
     }
 }
 

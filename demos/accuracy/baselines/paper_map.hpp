@@ -56,6 +56,9 @@ public:
         const Cell high = cellAt(highX, highZ);
         return {low.x, low.z, high.x, high.z};
     }
+    [[nodiscard]] Range range(const Aabb<float>& box) const {
+        return range(box.min().x(), box.min().z(), box.max().x(), box.max().z());
+    }
     [[nodiscard]] Range all() const { return {0, 0, width_ - 1, depth_ - 1}; }
 
     [[nodiscard]] std::span<const std::uint32_t> objects(int x, int z) const {
@@ -101,5 +104,15 @@ private:
     std::vector<Range> index_;            // the paper's object index: the cells of each object
     std::vector<std::uint32_t> objects_;  // bucket by bucket
 };
+
+/// Calls visit(x, z) for each of the cells, row by row.
+template <class Visit>
+void forEachCell(const PaperMap::Range& cells, const Visit& visit) {
+    for (int z = cells.lowZ; z <= cells.highZ; ++z) {
+        for (int x = cells.lowX; x <= cells.highX; ++x) {
+            visit(x, z);
+        }
+    }
+}
 
 }  // namespace hashphase::demos

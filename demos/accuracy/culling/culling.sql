@@ -18,16 +18,19 @@ FROM looks GROUP BY looks.scene, looks.setting, looks.method ORDER BY min(looks.
 
 -- What it did in all settings; worst_setting is that of the greatest loss.
 CREATE TABLE did_in_all AS
-SELECT method, scene, sum(visible) AS visible, sum(lost) AS lost, sum(in_vain) AS in_vain,
-       max(lost_percent) AS worst, setting AS worst_setting
-FROM did GROUP BY scene, method ORDER BY min(rowid);
+SELECT total.* FROM (
+    SELECT method, scene, sum(visible) AS visible, sum(lost) AS lost, sum(in_vain) AS in_vain,
+           max(lost_percent) AS worst, setting AS worst_setting
+    FROM did GROUP BY scene, method) AS total JOIN methods USING (method)
+ORDER BY scene, number;
 
 -- With its time, in microseconds a look, where it was timed.
 CREATE TABLE timed AS
 SELECT did.*, methods.*, did_in_all.lost AS lost_in_all, worst,
        iif(takes_cells, did.method || ', ' || number(did.cell) || ' m cells', did.method) AS name,
        iif(takes_cells, number(did.cell) || ' m', '') AS label,
-       median(us) AS us, percentile(us, 0.05) AS low, percentile(us, 0.95) AS high
+       1000 * median(ms) AS us, 1000 * percentile(ms, 0.05) AS low,
+       1000 * percentile(ms, 0.95) AS high
 FROM did JOIN methods USING (method) JOIN did_in_all USING (scene, method)
      JOIN times USING (setting, method)
 WHERE did.scene = 'ground' GROUP BY did.setting, did.method ORDER BY did.rowid;

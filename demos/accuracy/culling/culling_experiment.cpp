@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/culling/culling_experiment.hpp>
 
-#include <demos/accuracy/culling/culling_scenes.hpp>
-#include <demos/accuracy/culling/exact_frustum.hpp>
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/timing.hpp>
+#include <demos/scenes/random.hpp>
+
+#include <Eigen/LU>
+
+#include <numbers>
 
 namespace hashphase::demos {
 namespace {
@@ -13,84 +14,84 @@ constexpr std::string_view kCullingDeclaration =
 #include <demos/accuracy/culling/culling.sql>
     ;
 
-/// A method at work on the scene of a setting.
-struct Look {
-    const CullingMethod* method;
-    const CullingSetting* setting;
-    std::unique_ptr<Culling> culling;
+// --- Scenes ------------------------------------------------------------------------------------------
+
+constexpr float kSide = 1000;      // of the ground [m]
+constexpr float kEyeHeight = 120;  // [m]
+constexpr float kDegree = std::numbers::pi_v<float> / 180;
+constexpr int kViewsPerFlight = 8;
+
+// In a 60th of a second, at 6 m/s and 12 degrees a second.
+constexpr float kStride = 0.1F;          // [m]
+constexpr float kTurn = 0.2F * kDegree;  // [rad]
+
+/// Where the camera looks, and at what.
+struct CullingSetting {
+    std::string name;
+    float fieldOfView = 60;  // [degrees]
+    float pitch = -45;       // [degrees]
+    float yaw = 20;          // [degrees]
+    float tallest = 10;      // [m]
+    float cellSize = 10;     // [m]
 };
 
-std::vector<Look> looksAt(const CullingSetting& setting, std::span<const Aabb<float>> boxes,
-                          std::span<const CullingMethod> methods, bool cellsMatterOnly) {
-    std::vector<Look> looks;
-    for (const CullingMethod& method : methods) {
-        if (method.takesCells || !cellsMatterOnly) {
-            looks.push_back(
-                {&method, &setting, method.make({boxes, setting.tallest, setting.cellSize})});
-        }
-    }
-    return looks;
-}
-
-/// Has all of them look at the boxes, and counts what they get wrong.
-void judge(std::span<const Look> looks, std::string_view scene, const CameraView& view,
-           std::span<const Aabb<float>> boxes, Measurements& measured) {
-    const ExactFrustum truth(view);
-    std::vector<bool> isVisible;
-    for (const Aabb<float>& box : boxes) {
-        isVisible.push_back(truth.sees(box));
-    }
-    for (const auto& [method, setting, culling] : looks) {
-        const CullingCost cost = culling->look(view);
-        int visible = 0;
-        int lost = 0;
-        int inVain = 0;
-        for (std::uint32_t object = 0; object < boxes.size(); ++object) {
-            const bool isDrawn = culling->draws(object);
-            visible += isVisible[object] ? 1 : 0;
-            lost += isVisible[object] && !isDrawn ? 1 : 0;
-            inVain += isDrawn && !isVisible[object] ? 1 : 0;
-        }
-        measured.add("looks", {{"scene", scene},
-                               {"setting", setting->name},
-                               {"cell", setting->cellSize},
-                               {"method", method->name},
-                               {"visible", visible},
-                               {"lost", lost},
-                               {"in_vain", inVain},
-                               {"cells", cost.cells},
-                               {"boxes", cost.boxes}});
-    }
-}
-
-void time(std::span<const Look> looks, const CullingSetting& setting, int frames,
-          std::uint64_t seed, Measurements& measured) {
-    constexpr int warmUp = 3;
-    Random random(seed);
+/// A camera that flies straight on from a random place and turns a little.
+std::vector<CameraView> flight(const CullingSetting& setting, Random& random) {
+    CameraPose pose;
+    pose.eye = {random.between(0.3F, 0.7F) * kSide, kEyeHeight, random.between(0.3F, 0.7F) * kSide};
+    pose.yaw = setting.yaw * kDegree;
+    pose.pitch = setting.pitch * kDegree;
+    pose.fieldOfView = setting.fieldOfView * kDegree;
     std::vector<CameraView> views;
-    std::vector<std::function<void()>> runs;
-    for (const Look& look : looks) {
-        runs.emplace_back([&views, &culling = *look.culling] {
-            for (const CameraView& view : views) {
-                culling.look(view);
-            }
-        });
+    for (int i = 0; i < kViewsPerFlight; ++i) {
+        views.push_back(cameraView(pose));
+        pose.eye.x() += kStride;
+        pose.yaw += kTurn;
     }
-    const auto times = timesInTurn(
-        frames, warmUp, [&](int) { views = flight(setting, random); }, runs);
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-        for (const double milliseconds : times[i]) {
-            measured.add("times", {{"setting", looks[i].setting->name},
-                                   {"method", looks[i].method->name},
-                                   {"us", milliseconds * 1000 / kViewsPerFlight}});
-        }
-    }
+    return views;
 }
 
-// Whether the settings differ in nothing but the cell size.
-bool isSameView(const CullingSetting& a, const CullingSetting& b) {
-    return a.fieldOfView == b.fieldOfView && a.pitch == b.pitch && a.yaw == b.yaw &&
-           a.tallest == b.tallest;
+/// Boxes of 1 to 3 m that stand on the ground, up to `tallest` high.
+std::vector<Aabb<float>> standingBoxes(std::size_t count, float tallest, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Aabb<float>> boxes;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vector3<float> low{random.between(0, kSide), 0, random.between(0, kSide)};
+        const Vector3<float> size{random.between(1, 3), tallest * random.between(0.1F, 1),
+                                  random.between(1, 3)};
+        boxes.emplace_back(low, low + size);
+    }
+    return boxes;
+}
+
+// A random point of the left, right, bottom or top plane, between the near plane and the far one.
+Vector3<double> pointOnSide(const Eigen::Matrix4d& toWorld, std::size_t plane, Random& random) {
+    Eigen::Vector4d onScreen(static_cast<double>(random.between(-1, 1)),
+                             static_cast<double>(random.between(-1, 1)),
+                             1 - static_cast<double>(random.between(0, 0.01F)), 1);
+    onScreen[static_cast<Eigen::Index>(plane / 2)] = plane % 2 == 0 ? -1 : 1;
+    return (toWorld * onScreen).eval().hnormalized();
+}
+
+/// Boxes above the ground, but not above `tallest`, that stay outside of the view but for a corner,
+/// which lies on one of its planes as far as single precision allows: some touch it, others do not.
+std::vector<Aabb<float>> touchingBoxes(std::size_t count, float tallest, const CameraView& view,
+                                       Random& random) {
+    const Eigen::Matrix4d toWorld = view.viewProjection.cast<double>().inverse();
+    std::vector<Aabb<float>> boxes;
+    while (boxes.size() < count) {
+        const auto plane = static_cast<std::size_t>(random.between(0, 4));
+        const Vector3<float> corner = pointOnSide(toWorld, plane, random).cast<float>();
+        const Vector3<float> size{random.between(1, 3), random.between(1, 3), random.between(1, 3)};
+        // The normal points inwards, and so does the corner.
+        const Vector3<float> normal = view.planes[plane].normal();
+        const Vector3<float> opposite = (normal.array() > 0).select(corner - size, corner + size);
+        const Aabb<float> box(corner.cwiseMin(opposite), corner.cwiseMax(opposite));
+        if (box.min().y() >= 0 && box.max().y() <= tallest) {
+            boxes.push_back(box);
+        }
+    }
+    return boxes;
 }
 
 /// One factor after another around the first setting.
@@ -111,13 +112,85 @@ std::vector<CullingSetting> cullingSettings() {
     vary("yaw", &CullingSetting::yaw, " deg", {0, 45});
     vary("objects up to", &CullingSetting::tallest, " m", {1, 40});
     vary("cells", &CullingSetting::cellSize, " m", {5, 25, 50, 100});
-    CullingSetting best;  // for the paper's camera from above
-    best.name = "straight down, yaw 0, 1 m";
-    best.pitch = -90;
-    best.yaw = 0;
-    best.tallest = 1;
-    settings.push_back(best);
+    // For the paper's camera from above.
+    settings.push_back({.name = "straight down, yaw 0, 1 m", .pitch = -90, .yaw = 0, .tallest = 1});
     return settings;
+}
+
+// Whether the settings differ in nothing but the cell size.
+bool isSameView(const CullingSetting& a, const CullingSetting& b) {
+    return a.fieldOfView == b.fieldOfView && a.pitch == b.pitch && a.yaw == b.yaw &&
+           a.tallest == b.tallest;
+}
+
+// --- Looks -------------------------------------------------------------------------------------------
+
+/// A method at work on the scene of a setting.
+struct Look {
+    const CullingMethod* method;
+    const CullingSetting* setting;
+    Culling culling;
+};
+
+std::vector<Look> looksAt(const CullingSetting& setting, std::span<const Aabb<float>> boxes,
+                          std::span<const CullingMethod> methods, bool cellsMatterOnly) {
+    std::vector<Look> looks;
+    for (const CullingMethod& method : methods) {
+        if (method.is("takes_cells") || !cellsMatterOnly) {
+            looks.push_back(
+                {&method, &setting, method.make({boxes, setting.tallest, setting.cellSize})});
+        }
+    }
+    return looks;
+}
+
+/// Has all of them look at the boxes, and counts what they get wrong.
+void judge(std::span<const Look> looks, std::string_view scene, const CameraView& view,
+           std::span<const Aabb<float>> boxes, Measurements& measured) {
+    const ExactFrustum truth(view);
+    std::vector<bool> isVisible;
+    for (const Aabb<float>& box : boxes) {
+        isVisible.push_back(truth.sees(box));
+    }
+    for (const auto& [method, setting, culling] : looks) {
+        const CullingCost cost = culling.look(view);
+        int visible = 0;
+        int lost = 0;
+        int inVain = 0;
+        for (std::uint32_t object = 0; object < boxes.size(); ++object) {
+            const bool isDrawn = culling.draws(object);
+            visible += isVisible[object] ? 1 : 0;
+            lost += isVisible[object] && !isDrawn ? 1 : 0;
+            inVain += isDrawn && !isVisible[object] ? 1 : 0;
+        }
+        measured.add("looks", {{"scene", scene},
+                               {"setting", setting->name},
+                               {"cell", setting->cellSize},
+                               {"method", method->name},
+                               {"visible", visible},
+                               {"lost", lost},
+                               {"in_vain", inVain},
+                               {"cells", cost.cells},
+                               {"boxes", cost.boxes}});
+    }
+}
+
+void time(std::span<const Look> looks, const CullingSetting& setting, int frames,
+          std::uint64_t seed, Measurements& measured) {
+    Random random(seed);
+    std::vector<CameraView> views;
+    std::vector<TimedMethod> methods;
+    for (const Look& look : looks) {
+        methods.push_back({{{"setting", look.setting->name}, {"method", look.method->name}},
+                           [&views, &culling = look.culling] {
+                               for (const CameraView& view : views) {
+                                   culling.look(view);
+                               }
+                           }});
+    }
+    measureTimes(
+        measured, {frames, 3, 1.0 / kViewsPerFlight}, [&](int) { views = flight(setting, random); },
+        methods);
 }
 
 void judgeTouching(const CullingPlan& plan, const CullingSetting& setting, std::uint64_t seed,
@@ -138,14 +211,7 @@ Findings findCulling(const CullingPlan& plan, std::uint64_t seed,
                      std::span<const CullingMethod> methods, const TellProgress& tell) {
     Measurements measured;
     measured.add("plan", {{"objects", plan.objects}, {"seed", seed}});
-    for (const CullingMethod& method : methods) {
-        measured.add("methods", {{"number", &method - methods.data()},
-                                 {"method", method.name},
-                                 {"ours", method.isOurs},
-                                 {"must_see_all", method.mustSeeAll},
-                                 {"must_be_exact", method.mustBeExact},
-                                 {"takes_cells", method.takesCells}});
-    }
+    addMethods(methods, {"must_see_all", "must_be_exact", "takes_cells"}, measured);
     const std::vector<CullingSetting> settings = cullingSettings();
     const CullingSetting& first = settings.front();
     std::vector<std::vector<Aabb<float>>> scenes;  // methods go on reading what they have filed

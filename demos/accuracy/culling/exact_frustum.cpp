@@ -4,7 +4,7 @@
 // Faces are clipped by one plane after another: I. Sutherland, G. Hodgman, "Reentrant Polygon
 // Clipping", 1974.
 
-#include <demos/accuracy/culling/exact_frustum.hpp>
+#include <demos/accuracy/culling/culling_experiment.hpp>
 
 #include <Eigen/LU>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/origin/origin_experiment.hpp>
 
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/timing.hpp>
+#include <demos/compare/reference_pairs.hpp>
 #include <demos/console/format.hpp>
 
 #include <Eigen/Core>
@@ -32,8 +31,6 @@ bool isNextToPowerOfTen(double offset) {
 
 // --- Pairs and rays ------------------------------------------------------------------------------
 
-using Worlds = std::vector<std::unique_ptr<OriginWorld>>;
-
 std::vector<WorldBox> worldBoxes(const OriginScene& scene, const BodyPlacement& place) {
     std::vector<WorldBox> boxes;
     for (const IntegerBox& box : scene.boxes()) {
@@ -41,25 +38,6 @@ std::vector<WorldBox> worldBoxes(const OriginScene& scene, const BodyPlacement& 
     }
     return boxes;
 }
-
-/// What is there, sorted, against what a method lists.
-struct Comparison {
-    std::size_t all = 0;
-    std::size_t missed = 0;
-    std::size_t falsely = 0;  // listed, but not there; or a second time
-
-    template <class Thing>
-    void add(const std::vector<Thing>& there, std::vector<Thing>& listed) {
-        std::sort(listed.begin(), listed.end());
-        const auto missing = static_cast<std::size_t>(
-            std::count_if(there.begin(), there.end(), [&](const Thing& each) {
-                return !std::binary_search(listed.begin(), listed.end(), each);
-            }));
-        all += there.size();
-        missed += missing;
-        falsely += listed.size() - (there.size() - missing);
-    }
-};
 
 std::vector<PairKey> exactPairs(const std::vector<IntegerBox>& boxes) {
     std::vector<PairKey> pairs;
@@ -84,32 +62,37 @@ std::vector<std::uint32_t> exactHits(const IntegerRay& ray, const std::vector<In
 }
 
 void judge(const OriginScene& scene, const BodyPlacement& place,
-           std::span<const OriginMethod> methods, const Worlds& worlds, Measurements& measured) {
+           std::span<const OriginMethod> methods, std::span<const OriginWorld> worlds,
+           Measurements& measured) {
     const std::vector<PairKey> truePairs = exactPairs(scene.boxes());
     std::vector<std::vector<std::uint32_t>> trueHits;
     for (const IntegerRay& ray : scene.rays()) {
         trueHits.push_back(exactHits(ray, scene.boxes()));
     }
     for (std::size_t k = 0; k < methods.size(); ++k) {
-        Comparison pairs;
-        std::vector<PairKey> listedPairs;
-        worlds[k]->listPairs(listedPairs);
-        pairs.add(truePairs, listedPairs);
-        Comparison hits;
+        std::vector<PairKey> pairs;
+        worlds[k].listPairs(pairs);
+        std::sort(pairs.begin(), pairs.end());
+        std::size_t hits = 0;
+        std::size_t missed = 0;
+        std::size_t falsely = 0;
         for (std::size_t i = 0; i < trueHits.size(); ++i) {
-            std::vector<std::uint32_t> listedHits;
-            worlds[k]->listHits(place(scene.rays()[i]), listedHits);
-            hits.add(trueHits[i], listedHits);
+            std::vector<std::uint32_t> listed;
+            worlds[k].listHits(place(scene.rays()[i]), listed);
+            std::sort(listed.begin(), listed.end());
+            hits += trueHits[i].size();
+            missed += countMissing(trueHits[i], listed);
+            falsely += countMissing(listed, trueHits[i]);
         }
         measured.add("looks", {{"fine", place.unit == kFineUnit},
                                {"offset", place.offset},
                                {"method", methods[k].name},
-                               {"pairs", pairs.all},
-                               {"missed_pairs", pairs.missed},
-                               {"extra_pairs", pairs.falsely},
-                               {"hits", hits.all},
-                               {"missed_hits", hits.missed},
-                               {"false_hits", hits.falsely}});
+                               {"pairs", truePairs.size()},
+                               {"missed_pairs", countMissing(truePairs, pairs)},
+                               {"extra_pairs", countMissing(pairs, truePairs)},
+                               {"hits", hits},
+                               {"missed_hits", missed},
+                               {"false_hits", falsely}});
     }
 }
 
@@ -118,38 +101,30 @@ void judge(const OriginScene& scene, const BodyPlacement& place,
 void moveScene(const BodyPlacement& place, OriginScene scene, std::span<const OriginMethod> methods,
                Measurements& measured) {
     constexpr int framesALook = 10;
-    constexpr int warmUp = 2;
     const BodyPlacement atOrigin{0, place.unit};
     std::vector<WorldBox> boxes = worldBoxes(scene, place);
     std::vector<WorldBox> boxesAtOrigin = worldBoxes(scene, atOrigin);
-    Worlds worlds;
-    std::vector<std::function<void()>> timed;
-    for (const OriginMethod& method : methods) {
+    std::vector<OriginWorld> worlds;
+    std::vector<TimedMethod> timed;
+    const auto add = [&](const OriginMethod& method, const Datum& name, const auto& itsBoxes) {
         worlds.push_back(method.make());
-        timed.emplace_back([&boxes, world = worlds.back().get()] { world->set(boxes); });
+        timed.push_back(
+            {{{"fine", place.unit == kFineUnit}, {"offset", place.offset}, {"method", name}},
+             [&itsBoxes, set = worlds.back().set] { set(itsBoxes); }});
+    };
+    for (const OriginMethod& method : methods) {
+        add(method, method.name, boxes);
     }
-    const std::unique_ptr<OriginWorld> reference = methods.front().make();
-    timed.emplace_back([&] { reference->set(boxesAtOrigin); });
-    const auto times = timesInTurn(
-        kFewestFrames, warmUp,
-        [&](int frame) {
-            if (frame % framesALook == 1) {
-                judge(scene, place, methods, worlds, measured);
-            }
-            scene.advance();
-            boxes = worldBoxes(scene, place);
-            boxesAtOrigin = worldBoxes(scene, atOrigin);
-        },
-        timed);
-    for (std::size_t i = 0; i < times.size(); ++i) {
-        for (const double milliseconds : times[i]) {
-            measured.add("frames",
-                         {{"fine", place.unit == kFineUnit},
-                          {"offset", place.offset},
-                          {"method", i < methods.size() ? Datum(methods[i].name) : Datum()},
-                          {"ms", milliseconds}});
+    add(methods.front(), {}, boxesAtOrigin);
+    const auto begin = [&](int frame) {
+        if (frame % framesALook == 1) {
+            judge(scene, place, methods, worlds, measured);
         }
-    }
+        scene.advance();
+        boxes = worldBoxes(scene, place);
+        boxesAtOrigin = worldBoxes(scene, atOrigin);
+    };
+    measureTimes(measured, {.warmUp = 2, .table = "frames"}, begin, timed);
 }
 
 // --- Balls that come to rest ---------------------------------------------------------------------
@@ -214,11 +189,12 @@ void settle(double offset, std::span<const SettleMethod> methods, Measurements& 
     constexpr int steps = 300;
     constexpr btScalar stepLength = btScalar(1) / btScalar(60);  // [s]
     std::vector<std::unique_ptr<PhysicsWorld>> worlds;
-    std::vector<std::function<void()>> timed;
+    std::vector<TimedMethod> timed;
     for (const SettleMethod& method : methods) {
         worlds.push_back(std::make_unique<PhysicsWorld>(method.broadphase, ListOrder::asShipped));
         fill(worlds.back()->contents(), method.shiftsOrigin ? 0 : offset);
-        timed.emplace_back([world = worlds.back().get()] { world->step(stepLength); });
+        timed.push_back({{{"offset", offset}, {"method", method.name}},
+                         [&world = *worlds.back()] { world.step(stepLength); }});
     }
     std::vector<std::vector<Places>> courses(methods.size());
     const auto look = [&](int /*step*/) {
@@ -226,7 +202,7 @@ void settle(double offset, std::span<const SettleMethod> methods, Measurements& 
             courses[i].push_back(placesOf(worlds[i]->contents()));
         }
     };
-    const auto times = timesInTurn(steps, 0, look, timed);
+    measureTimes(measured, {.frames = steps, .table = "steps"}, look, timed);
     look(steps);
     for (std::size_t i = 0; i < methods.size(); ++i) {
         const double seenFrom = methods[i].shiftsOrigin ? 0 : offset;
@@ -236,10 +212,6 @@ void settle(double offset, std::span<const SettleMethod> methods, Measurements& 
                                  {"position_error", farthest(courses[i].back(), ought)},
                                  {"step", settleStep(courses[i])},
                                  {"state", std::to_string(stateHash(worlds[i]->contents()))}});
-        for (const double milliseconds : times[i]) {
-            measured.add("steps",
-                         {{"offset", offset}, {"method", methods[i].name}, {"ms", milliseconds}});
-        }
     }
 }
 
@@ -256,14 +228,7 @@ Findings findOrigin(const OriginPlan& plan, std::uint64_t seed,
                     const TellProgress& tell) {
     Measurements measured;
     measured.add("plan", {{"boxes", plan.boxes}, {"rays", plan.rays}, {"seed", seed}});
-    for (const OriginMethod& method : methods) {
-        measured.add("methods", {{"number", &method - methods.data()},
-                                 {"method", method.name},
-                                 {"ours", method.isOurs},
-                                 {"misses_no_pair", method.missesNoPair},
-                                 {"misses_no_hit", method.missesNoHit},
-                                 {"exact", method.isExact}});
-    }
+    addMethods(methods, {"misses_no_pair", "misses_no_hit", "exact"}, measured);
     for (const SettleMethod& method : settling) {
         measured.add("settling", {{"number", &method - settling.data()},
                                   {"method", method.name},

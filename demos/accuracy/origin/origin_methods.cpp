@@ -3,6 +3,7 @@
 
 #include <broadphase/pairs.hpp>
 #include <demos/accuracy/baselines/dbvt_boxes.hpp>
+#include <integration/bullet/conversions.hpp>
 
 #include <cmath>
 #include <limits>
@@ -86,109 +87,81 @@ struct FromCell : Nearest<float> {
 
 /// Indices of an empty grid's proxies count up from 0.
 template <class Scalar, class Numbers>
-class GridWorld final : public OriginWorld {
-public:
-    void set(std::span<const WorldBox> boxes) override {
-        numbers_.look(boxes);
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const Aabb<Scalar> box = numbers_.box(boxes[i]);
-            if (i < ids_.size()) {
-                grid_.move(ids_[i], box);
-            } else {
-                ids_.push_back(grid_.add(box));
-            }
-        }
-        pairs_.update([](ProxyId, ProxyId) { return true; });
-    }
+OriginWorld gridWorld() {
+    struct Filed {
+        Numbers numbers;
+        Grid<Scalar> grid;
+        Pairs<Scalar> pairs{grid};
+        std::vector<ProxyId> ids;
+    };
+    const auto filed = std::make_shared<Filed>();
+    return {[=](std::span<const WorldBox> boxes) {
+                filed->numbers.look(boxes);
+                for (std::size_t i = 0; i < boxes.size(); ++i) {
+                    const Aabb<Scalar> box = filed->numbers.box(boxes[i]);
+                    if (i < filed->ids.size()) {
+                        filed->grid.move(filed->ids[i], box);
+                    } else {
+                        filed->ids.push_back(filed->grid.add(box));
+                    }
+                }
+                filed->pairs.update([](ProxyId, ProxyId) { return true; });
+            },
+            [=](std::vector<PairKey>& pairs) {
+                std::vector<ProxyPair> all;
+                filed->pairs.collect(all);
+                for (const ProxyPair& pair : all) {
+                    pairs.push_back(pairKey(pair.first.index, pair.second.index));
+                }
+            },
+            [=](const WorldRay& ray, std::vector<std::uint32_t>& boxes) {
+                std::vector<ProxyId> hits;
+                CollectAll collector(hits);
+                filed->grid.visit(filed->numbers.ray(ray), collector);
+                for (const ProxyId hit : hits) {
+                    boxes.push_back(hit.index);
+                }
+            }};
+}
 
-    void listPairs(std::vector<PairKey>& pairs) override {
-        std::vector<ProxyPair> all;
-        pairs_.collect(all);
-        for (const ProxyPair& pair : all) {
-            pairs.push_back(pairKey(pair.first.index, pair.second.index));
-        }
-    }
-
-    void listHits(const WorldRay& ray, std::vector<std::uint32_t>& boxes) override {
-        std::vector<ProxyId> hits;
-        CollectAll collector(hits);
-        grid_.visit(numbers_.ray(ray), collector);
-        for (const ProxyId hit : hits) {
-            boxes.push_back(hit.index);
-        }
-    }
-
-private:
-    Numbers numbers_;
-    Grid<Scalar> grid_;
-    Pairs<Scalar> pairs_{grid_};
-    std::vector<ProxyId> ids_;
-};
-
-class DbvtWorld final : public OriginWorld {
-public:
-    ~DbvtWorld() override {
-        for (btBroadphaseProxy* proxy : proxies_) {
-            broadphase_.destroyProxy(proxy, nullptr);
-        }
-    }
-
-    void set(std::span<const WorldBox> boxes) override {
-        for (std::size_t i = 0; i < boxes.size(); ++i) {
-            const Aabb<float> box = Nearest<float>().box(boxes[i]);
-            const btVector3 low = toBullet(box.min());
-            const btVector3 high = toBullet(box.max());
-            if (i < proxies_.size()) {
-                broadphase_.setAabb(proxies_[i], low, high, nullptr);
-            } else {
-                proxies_.push_back(broadphase_.createProxy(low, high, 0, this,
-                                                           btBroadphaseProxy::DefaultFilter,
-                                                           btBroadphaseProxy::AllFilter, nullptr));
-            }
-        }
-        broadphase_.calculateOverlappingPairs(nullptr);
-    }
-
-    void listPairs(std::vector<PairKey>& pairs) override {
-        const btBroadphasePairArray& all =
-            broadphase_.getOverlappingPairCache()->getOverlappingPairArray();
-        for (int i = 0; i < all.size(); ++i) {
-            pairs.push_back(pairKey(DbvtBoxes::objectOf(*all[i].m_pProxy0),
-                                    DbvtBoxes::objectOf(*all[i].m_pProxy1)));
-        }
-    }
-
-    void listHits(const WorldRay& ray, std::vector<std::uint32_t>& boxes) override {
-        const btVector3 from = toBullet(ray.from.cast<float>());
-        const btVector3 to = toBullet(ray.to.cast<float>());
-        if (!(from == to)) {  // Bullet cannot cast a ray without direction
-            castRay(broadphase_, from, to, [&](const btBroadphaseProxy& proxy) {
-                boxes.push_back(DbvtBoxes::objectOf(proxy));
-            });
-        }
-    }
-
-private:
-    btDbvtBroadphase broadphase_;
-    std::vector<btBroadphaseProxy*> proxies_;
-};
-
-template <class World>
-std::unique_ptr<OriginWorld> makeWorld() {
-    return std::make_unique<World>();
+OriginWorld dbvtWorld() {
+    const auto filed = std::make_shared<std::optional<FilledBroadphase>>();
+    return {[=](std::span<const WorldBox> boxes) {
+                const bool isNew = !filed->has_value();
+                if (isNew) {
+                    filed->emplace(broadphaseKind("dbvt"),
+                                   BroadphaseNeeds{Aabb<float>(), boxes.size()});
+                }
+                for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+                    const Aabb<float> box = Nearest<float>().box(boxes[i]);
+                    const BulletBox converted{toBullet(box.min()), toBullet(box.max())};
+                    isNew ? (*filed)->create(i, converted, {}) : (*filed)->set(i, converted);
+                }
+                (*filed)->findPairs();
+            },
+            [=](std::vector<PairKey>& pairs) { (*filed)->listPairs(pairs); },
+            [=](const WorldRay& ray, std::vector<std::uint32_t>& boxes) {
+                const btVector3 from = toBullet(ray.from.cast<float>());
+                const btVector3 to = toBullet(ray.to.cast<float>());
+                if (!(from == to)) {  // Bullet cannot cast a ray without direction
+                    castRay((*filed)->broadphase(), from, to, [&](const btBroadphaseProxy& proxy) {
+                        boxes.push_back(FilledBroadphase::objectOf(proxy));
+                    });
+                }
+            }};
 }
 
 }  // namespace
 
 std::vector<OriginMethod> originMethods() {
     return {
-        {"float", true, true, false, false, makeWorld<GridWorld<float, Nearest<float>>>},
-        {"float, rounded outward", true, true, true, false, makeWorld<GridWorld<float, Outward>>},
-        {"float positions", true, false, false, false, makeWorld<GridWorld<float, FromPosition>>},
-        {"integer cell + local float", true, true, true, true,
-         makeWorld<GridWorld<float, FromCell>>},
-        {"double", true, true, true, true, makeWorld<GridWorld<double, Nearest<double>>>},
-        {"btDbvtBroadphase, float", false, false, false, false, makeWorld<DbvtWorld>},
+        {"float", "ours misses_no_pair", gridWorld<float, Nearest<float>>},
+        {"float, rounded outward", "ours misses_no_pair misses_no_hit", gridWorld<float, Outward>},
+        {"float positions", "ours", gridWorld<float, FromPosition>},
+        {"integer cell + local float", "ours misses_no_pair misses_no_hit exact",
+         gridWorld<float, FromCell>},
+        {"double", "ours misses_no_pair misses_no_hit exact", gridWorld<double, Nearest<double>>},
+        {"btDbvtBroadphase, float", "bullet", dbvtWorld},
     };
 }
 

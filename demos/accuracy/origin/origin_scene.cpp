@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/origin/origin_scene.hpp>
+#include <demos/accuracy/origin/origin_experiment.hpp>
 
 #include <demos/scenes/random.hpp>
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/pairs/cell_size.hpp>
+#include <demos/accuracy/pairs/pair_experiments.hpp>
 
-#include <demos/accuracy/baselines/paper_grid.hpp>
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/timing.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>

@@ -1,11 +1,27 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/pairs/pair_trial.hpp>
+#include <demos/accuracy/pairs/pair_experiments.hpp>
 
-#include <demos/accuracy/timing.hpp>
 #include <demos/compare/verifier.hpp>
 
 namespace hashphase::demos {
 namespace {
+
+PairSource broadphaseSource(const BroadphaseKind& kind, const BroadphaseNeeds& needs,
+                            std::span<const BulletBox> boxes) {
+    const auto filled = std::make_shared<FilledBroadphase>(kind, needs);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        filled->create(static_cast<std::uint32_t>(i), boxes[i], {});
+    }
+    PairSource source{[=](std::span<const BulletBox> moved) {
+                          filled->setAll(moved);
+                          filled->findPairs();
+                      },
+                      [=](std::vector<PairKey>& pairs) { filled->listPairs(pairs); }};
+    if (const auto* hash = dynamic_cast<const SpatialHashBroadphase*>(&filled->broadphase())) {
+        source.boxesTested = [filled, hash] { return hash->lastCost().boxesTested; };
+    }
+    return source;
+}
 
 constexpr std::size_t kBruteForceUpTo = 20'000;
 
@@ -27,9 +43,9 @@ public:
                                    {"way", way},
                                    {"method", methods[way].name},
                                    {"factor", methods[way].factor},
-                                   {"origin", methods[way].origin},
-                                   {"exact", methods[way].isExact},
-                                   {"complete", methods[way].isComplete}});
+                                   {"origin", methods[way].origin()},
+                                   {"exact", methods[way].is("exact")},
+                                   {"complete", methods[way].is("complete")}});
         }
     }
 
@@ -57,7 +73,7 @@ public:
         for (std::size_t way = 0; way < entries_.size(); ++way) {
             if (entries_[way].tested <= entries_[way].mostTestsTimed * entries_[way].testedFrames) {
                 methods.push_back(
-                    {{{"trial", trial_}, {"way", way}}, [&frames, &source = *entries_[way].source] {
+                    {{{"trial", trial_}, {"way", way}}, [&frames, &source = entries_[way].source] {
                          for (const std::vector<BulletBox>& boxes : frames) {
                              source.step(boxes);
                          }
@@ -70,12 +86,12 @@ public:
                 boxes = boxes_;
             }
         };
-        measureTimes(measured_, plan.rounds, 1, begin, methods, 1.0 / plan.framesTogether);
+        measureTimes(measured_, {plan.rounds, 1, 1.0 / plan.framesTogether}, begin, methods);
     }
 
 private:
     struct Entry {
-        std::unique_ptr<PairSource> source;
+        PairSource source;
         HeapMeter heap;
         Verifier verifier;
         double mostTestsTimed = 0;
@@ -100,18 +116,21 @@ private:
         Entry& entry = entries_[way];
         {
             const HeapScope scope(entry.heap);
-            entry.source->step(boxes_);
+            entry.source.step(boxes_);
         }
-        const std::optional<std::uint64_t> tested = entry.source->boxesTested();
+        std::optional<std::uint64_t> tested;
+        if (entry.source.boxesTested) {
+            tested = entry.source.boxesTested();
+        }
         entry.tested += static_cast<double>(tested.value_or(0));
         ++entry.testedFrames;
-        entry.source->listPairs(listed_);
-        const FrameVerdict verdict = entry.verifier.judge(listed_, truth_);
+        entry.source.listPairs(listed_);
+        const PairVerdict& verdict = entry.verifier.judge(listed_, truth_);
         measured_.add("judged", {{"trial", trial_},
                                  {"way", way},
-                                 {"true_pairs", verdict.exactPairs},
-                                 {"missed", verdict.missing},
-                                 {"extra", verdict.extra},
+                                 {"true_pairs", truth_.size()},
+                                 {"missed", verdict.missing.size()},
+                                 {"extra", verdict.extra.size()},
                                  {"tested", tested}});
     }
 
@@ -125,6 +144,23 @@ private:
 };
 
 }  // namespace
+
+PairMethod hashMethod(std::string name, const GridConfig& grid) {
+    return {{std::move(name), "ours exact complete",
+             [grid](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
+                 BroadphaseNeeds own = needs;
+                 own.grid = grid;
+                 return broadphaseSource(broadphaseKind("hash"), own, boxes);
+             }}};
+}
+
+PairMethod dbvtMethod(bool isDeferred) {
+    const BroadphaseKind& kind = broadphaseKind(isDeferred ? "dbvt-deferred" : "dbvt");
+    return {{std::string(kind.title), "bullet complete",
+             [&kind](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
+                 return broadphaseSource(kind, needs, boxes);
+             }}};
+}
 
 void tryPairs(std::size_t trial, BoxScene& scene, std::span<const PairMethod> methods,
               const PairTrialPlan& plan, Measurements& measured) {

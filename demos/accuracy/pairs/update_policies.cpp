@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/pairs/update_policies.hpp>
-
-#include <demos/accuracy/baselines/paper_grid.hpp>
-#include <demos/accuracy/experiments.hpp>
-#include <demos/scenes/scatter.hpp>
+#include <demos/accuracy/pairs/pair_experiments.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -38,7 +34,7 @@ BulletBox grown(const BulletBox& box, btScalar margin) {
 }
 
 /// Sets a box only when the object has left the one that is grown by the margin.
-class FatSource : public PairSource {
+class FatSource {
 public:
     FatSource(btScalar margin, FalsePairs falsePairs, const BroadphaseNeeds& needs,
               std::span<const BulletBox> boxes)
@@ -50,7 +46,7 @@ public:
         }
     }
 
-    void step(std::span<const BulletBox> boxes) override {
+    void step(std::span<const BulletBox> boxes) {
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             if (!contains(fat_[i], boxes[i])) {
                 fat_[i] = grown(boxes[i], margin_);
@@ -63,7 +59,7 @@ public:
         }
     }
 
-    void listPairs(std::vector<PairKey>& pairs) const override {
+    void listPairs(std::vector<PairKey>& pairs) const {
         if (falsePairs_ == FalsePairs::kKept) {
             filled_.listPairs(pairs);
             return;
@@ -95,47 +91,35 @@ private:
     std::vector<PairKey> true_;
 };
 
-/// Sets boxes and finds pairs in each `period`-th frame only; the pairs stand until the next.
-class StaleSource : public PairSource {
-public:
-    StaleSource(int period, std::unique_ptr<PairSource> source)
-        : period_(period), source_(std::move(source)) {}
-
-    void step(std::span<const BulletBox> boxes) override {
-        if (frame_++ % period_ == 0) {
-            source_->step(boxes);
-        }
-    }
-    void listPairs(std::vector<PairKey>& pairs) const override { source_->listPairs(pairs); }
-
-private:
-    int period_;
-    std::unique_ptr<PairSource> source_;
-    int frame_ = 0;
-};
-
 std::string centimetres(double metres) {
     return valueText(100 * metres) + " cm";
 }
 
 PairMethod fatMethod(double margin, FalsePairs falsePairs) {
     const bool isExact = falsePairs == FalsePairs::kRefused;
-    return {.name = "fat by " + centimetres(margin) + (isExact ? ", pairs tested" : ""),
-            .isExact = isExact,
-            .make = [=](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
-                return std::make_unique<FatSource>(static_cast<btScalar>(margin), falsePairs, needs,
-                                                   boxes);
-            }};
+    return {{"fat by " + centimetres(margin) + (isExact ? ", pairs tested" : ""),
+             isExact ? "ours exact complete" : "ours complete",
+             [=](const BroadphaseNeeds& needs, std::span<const BulletBox> boxes) {
+                 const auto fat = std::make_shared<FatSource>(static_cast<btScalar>(margin),
+                                                              falsePairs, needs, boxes);
+                 return PairSource{[=](std::span<const BulletBox> moved) { fat->step(moved); },
+                                   [=](std::vector<PairKey>& pairs) { fat->listPairs(pairs); }};
+             }}};
 }
 
+/// Sets boxes and finds pairs in each `period`-th frame only; the pairs stand until the next.
 PairMethod staleMethod(int period) {
-    return {.name = "every " + std::to_string(period) + " frames",
-            .isExact = false,
-            .isComplete = false,
-            .make = [period, make = hashMethod("").make](const BroadphaseNeeds& needs,
-                                                         std::span<const BulletBox> boxes) {
-                return std::make_unique<StaleSource>(period, make(needs, boxes));
-            }};
+    return {{"every " + std::to_string(period) + " frames", "ours",
+             [period, make = hashMethod("").make](const BroadphaseNeeds& needs,
+                                                  std::span<const BulletBox> boxes) {
+                 const PairSource fresh = make(needs, boxes);
+                 return PairSource{[=, frame = 0](std::span<const BulletBox> moved) mutable {
+                                       if (frame++ % period == 0) {
+                                           fresh.step(moved);
+                                       }
+                                   },
+                                   fresh.listPairs};
+             }}};
 }
 
 // --- The experiment -------------------------------------------------------------------------------

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/physics/physics_scenes.hpp>
+#include <demos/accuracy/physics/physics_experiments.hpp>
 
 #include <demos/scenes/random.hpp>
 #include <demos/scenes/world_scenes.hpp>

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/physics/physics_tasks.hpp>
-
-#include <demos/accuracy/physics/physics_scenes.hpp>
+#include <demos/accuracy/physics/physics_experiments.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/physics/time_step_experiment.hpp>
-
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/timing.hpp>
-
-#include <memory>
+#include <demos/accuracy/physics/physics_experiments.hpp>
 
 namespace hashphase::demos {
 namespace {
@@ -102,7 +97,7 @@ void run(const Point& point, std::size_t number, const PhysicsTask& task, std::u
             }
         }
     };
-    measureTimes(measured, kLooks, 0, lookBefore, methods, kLooksPerSecond);
+    measureTimes(measured, {kLooks, 0, kLooksPerSecond}, lookBefore, methods);
     lookBefore(kLooks);
 }
 

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/physics/trajectory_experiment.hpp>
-
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/timing.hpp>
+#include <demos/accuracy/physics/physics_experiments.hpp>
 
 #include <array>
-#include <memory>
 
 namespace hashphase::demos {
 namespace {
@@ -49,7 +45,7 @@ void run(const PhysicsScene& scene, std::size_t objects, ListOrder order,
             }
         }
     };
-    measureTimes(measured, settings.steps, 0, begin, methods);
+    measureTimes(measured, {.frames = settings.steps}, begin, methods);
     lookAfter(settings.steps);
 }
 

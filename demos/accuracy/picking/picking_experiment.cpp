@@ -2,9 +2,6 @@
 #include <demos/accuracy/picking/picking_experiment.hpp>
 
 #include <demos/accuracy/exact_entry.hpp>
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/picking/ray_scenes.hpp>
-#include <demos/accuracy/timing.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +15,8 @@ constexpr std::string_view kPickingDeclaration =
     ;
 
 constexpr std::array kOffsets{-64, -32, -16, -8, -4, -2, -1, 0, 1, 2, 4, 8, 16, 32, 64};  // [ulp]
+
+constexpr std::array kContactNames{"face", "edge", "corner"};
 
 using Boxes = std::span<const Aabb<float>>;
 using Entries = std::map<std::uint32_t, Fraction>;  // where a ray enters the boxes that it meets
@@ -99,7 +98,9 @@ void graze(const PickingPlan& plan, Random& random, std::span<const RayMethod> m
         for (const int ulps : kOffsets) {
             for (int i = 0; i < plan.graze; ++i) {
                 const auto [ray, box] = randomGraze(boxes, contact, ulps, random);
-                const KnownRay known{ray, exactEntries(ray, boxes), {}, nameOf(contact), ulps, box};
+                const KnownRay known{ray,  exactEntries(ray, boxes),
+                                     {},   kContactNames[static_cast<std::size_t>(contact)],
+                                     ulps, box};
                 for (std::size_t k = 0; k < methods.size(); ++k) {
                     judge(methods[k], casters[k], known, measured);
                 }
@@ -110,17 +111,16 @@ void graze(const PickingPlan& plan, Random& random, std::span<const RayMethod> m
 
 void time(const PickingPlan& plan, Random& random, std::span<const RayMethod> methods,
           std::span<const RayCaster> casters, Boxes boxes, Measurements& measured) {
-    constexpr int warmUp = 3;
     std::vector<Ray> rays;
     std::vector<RayHit> hits;
-    std::vector<std::function<void()>> runs;
-    for (const RayCaster& cast : casters) {
-        runs.emplace_back([&] {
-            for (const Ray& ray : rays) {
-                hits.clear();
-                cast(ray, hits);
-            }
-        });
+    std::vector<TimedMethod> timed;
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        timed.push_back({{{"method", methods[i].name}}, [&, &cast = casters[i]] {
+                             for (const Ray& ray : rays) {
+                                 hits.clear();
+                                 cast(ray, hits);
+                             }
+                         }});
     }
     const auto begin = [&](int /*frame*/) {
         rays.clear();
@@ -129,12 +129,7 @@ void time(const PickingPlan& plan, Random& random, std::span<const RayMethod> me
                 randomGraze(boxes, kContacts[i % kContacts.size()], std::nullopt, random).first);
         }
     };
-    const auto times = timesInTurn(plan.frames, warmUp, begin, runs);
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-        for (const double milliseconds : times[i]) {
-            measured.add("times", {{"method", methods[i].name}, {"ms", milliseconds}});
-        }
-    }
+    measureTimes(measured, {plan.frames, 3}, begin, timed);
 }
 
 void castFar(double length, const PickingPlan& plan, std::uint64_t seed,
@@ -148,7 +143,7 @@ void castFar(double length, const PickingPlan& plan, std::uint64_t seed,
         rays.push_back({ray, exactEntries(ray, scene.boxes), length, {}, {}, {}});
     }
     for (const RayMethod& method : methods) {
-        if (!method.walksCells || length <= plan.longestCellWalk) {
+        if (!method.is("walks_cells") || length <= plan.longestCellWalk) {
             const RayCaster cast = method.make(scene.boxes);
             for (const KnownRay& ray : rays) {
                 judge(method, cast, ray, measured);
@@ -167,13 +162,9 @@ Findings findPicking(const PickingPlan& plan, std::uint64_t seed,
                           {"longest_cell_walk", plan.longestCellWalk},
                           {"seed", seed}});
     const std::vector<Aabb<float>> boxes = slabOfBoxes(plan.boxes, seed);
+    addMethods(methods, {"must_find_all", "nearest_only"}, measured);
     std::vector<RayCaster> casters;
     for (const RayMethod& method : methods) {
-        measured.add("methods", {{"number", casters.size()},
-                                 {"method", method.name},
-                                 {"ours", method.isOurs},
-                                 {"must_find_all", method.mustFindAll},
-                                 {"nearest_only", method.findsNearestOnly}});
         casters.push_back(method.make(boxes));
     }
     Random random(seed + 1);

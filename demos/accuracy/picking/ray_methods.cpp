@@ -56,9 +56,8 @@ RayCaster cellCaster(Boxes boxes, bool isFlat, const Walk& walk) {
 }
 
 template <class Walk>
-RayMethod walker(std::string name, bool isFlat, const Walk& walk) {
-    return {std::move(name), false, false,
-            false,           true,  [=](Boxes boxes) { return cellCaster(boxes, isFlat, walk); }};
+auto walker(bool isFlat, const Walk& walk) {
+    return [=](Boxes boxes) { return cellCaster(boxes, isFlat, walk); };
 }
 
 /// The paper's picking in a grid of two dimensions: the cell in which the ray meets the ground.
@@ -131,7 +130,7 @@ RayCaster gridCaster(Boxes boxes, bool nearestOnly) {
 /// What btCollisionWorld::rayTest() asks of its broadphase: all boxes that the ray meets. How far
 /// away each is, Bullet's btRayAabb() says; it may also decide whether it is a hit.
 RayCaster dbvtCaster(Boxes boxes, bool mustPassRayAabb) {
-    const auto filed = std::make_shared<DbvtBoxes>(boxes);
+    const auto filed = filedInDbvt(boxes);
     return [=](const Ray& ray, std::vector<RayHit>& hits) {
         const btVector3 from = toBullet(ray.from);
         const btVector3 to = toBullet(ray.to);
@@ -141,7 +140,7 @@ RayCaster dbvtCaster(Boxes boxes, bool mustPassRayAabb) {
             const bool isHit =
                 btRayAabb(from, to, proxy.m_aabbMin, proxy.m_aabbMax, fraction, normal);
             if (isHit || !mustPassRayAabb) {
-                hits.push_back({DbvtBoxes::objectOf(proxy), fraction});
+                hits.push_back({FilledBroadphase::objectOf(proxy), fraction});
             }
         });
         return RayCost{};
@@ -157,18 +156,17 @@ std::vector<RayMethod> rayMethods() {
     const auto dbvt = [](bool mustPassRayAabb) {
         return [=](Boxes boxes) { return dbvtCaster(boxes, mustPassRayAabb); };
     };
-    std::vector<RayMethod> methods{
-        {"paper: point on the plane", false, false, false, false, planePoint},
-        walker("2D raster", true, kFlatRaster),
-        walker("DDA, accumulated", false, faces(BorderTimes::accumulated)),
-        walker("DDA, multiplied", false, faces(BorderTimes::multiplied)),
-        walker("DDA, conservative", false, kLayers),
-        {"Grid::visit(RayRegion)", true, true, false, false, grid(false)},
-        {"Grid::visit(RayRegion), closest", true, true, true, false, grid(true)},
-        {"btDbvtBroadphase::rayTest", false, false, false, false, dbvt(false)},
-        {"btDbvtBroadphase::rayTest, btRayAabb", false, false, false, false, dbvt(true)}};
-    methods[4].mustFindAll = true;
-    return methods;
+    return {
+        {"paper: point on the plane", "paper", planePoint},
+        {"2D raster", "others walks_cells", walker(true, kFlatRaster)},
+        {"DDA, accumulated", "others walks_cells", walker(false, faces(BorderTimes::accumulated))},
+        {"DDA, multiplied", "others walks_cells", walker(false, faces(BorderTimes::multiplied))},
+        {"DDA, conservative", "others walks_cells must_find_all", walker(false, kLayers)},
+        {"Grid::visit(RayRegion)", "ours must_find_all", grid(false)},
+        {"Grid::visit(RayRegion), closest", "ours must_find_all nearest_only", grid(true)},
+        {"btDbvtBroadphase::rayTest", "bullet", dbvt(false)},
+        {"btDbvtBroadphase::rayTest, btRayAabb", "bullet", dbvt(true)},
+    };
 }
 
 }  // namespace hashphase::demos

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/picking/ray_scenes.hpp>
+#include <demos/accuracy/picking/picking_experiment.hpp>
 
 #include <demos/accuracy/exact_entry.hpp>
 
@@ -36,11 +36,6 @@ float within(const Aabb<float>& box, int axis, Random& random) {
 }
 
 }  // namespace
-
-std::string_view nameOf(Contact contact) {
-    constexpr std::array<std::string_view, 3> names{"face", "edge", "corner"};
-    return names[static_cast<std::size_t>(contact)];
-}
 
 std::vector<Aabb<float>> slabOfBoxes(std::size_t count, std::uint64_t seed) {
     Random random(seed);

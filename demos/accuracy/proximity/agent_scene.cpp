@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/proximity/agent_scene.hpp>
+#include <demos/accuracy/proximity/proximity_experiment.hpp>
 
 #include <algorithm>
 #include <cmath>

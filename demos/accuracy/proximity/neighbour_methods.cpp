@@ -3,7 +3,7 @@
 // The paper's way: Hastings, Mesit, Guha, "Optimization of Large-Scale, Real-Time Simulations by
 // Spatial Hashing", "AI and Decision Making".
 
-#include <demos/accuracy/proximity/neighbour_methods.hpp>
+#include <demos/accuracy/proximity/proximity_experiment.hpp>
 
 #include <broadphase/cells_region.hpp>
 #include <broadphase/position_region.hpp>
@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace hashphase::demos {
 
@@ -23,112 +22,115 @@ std::uint32_t rarestOf(const ColourCounts& counts) {
                                       counts.begin());
 }
 
-void NeighbourSearch::decide(std::span<const std::uint32_t> colours,
-                             std::span<std::uint32_t> chosen) {
-    forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
-        ColourCounts counts{};
-        for (const std::uint32_t neighbour : neighbours) {
-            ++counts[colours[neighbour]];
-        }
-        chosen[agent] = rarestOf(counts);
-    });
-}
-
 namespace {
+
+using Visit = NeighbourSearch::Visit;
+using Colours = std::span<const std::uint32_t>;
+using Chosen = std::span<std::uint32_t>;
+using Found = std::vector<std::uint32_t>;
 
 // --- Of the library ------------------------------------------------------------------------------
 
-/// Has a grid of its own, in which ProxyId::index is an agent's number: a new grid counts from 0.
-class GridSearch : public NeighbourSearch {
-public:
-    explicit GridSearch(const NeighbourNeeds& needs)
-        : radius_(needs.radius),
-          grid_(GridConfig{.cellSize = static_cast<double>(needs.cellSize)}) {}
+/// Agents in a grid of their own, in which ProxyId::index is an agent's number: a new grid counts from 0.
+struct FiledAgents {
+    explicit FiledAgents(const NeighbourNeeds& needs)
+        : radius(needs.radius), grid(GridConfig{.cellSize = static_cast<double>(needs.cellSize)}) {}
 
-    void take(const AgentFrame& frame) override {
+    void take(const AgentFrame& frame) {
         for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
-            if (ids_.size() <= i) {
-                ids_.push_back(grid_.add(frame.boxes[i]));
+            if (ids.size() <= i) {
+                ids.push_back(grid.add(frame.boxes[i]));
             } else {
-                grid_.move(ids_[i], frame.boxes[i]);
+                grid.move(ids[i], frame.boxes[i]);
             }
         }
-        grid_.update();
+        grid.update();
     }
-
-protected:
-    [[nodiscard]] const Grid<float>& grid() const { return grid_; }
-    [[nodiscard]] float radius() const { return radius_; }
 
     /// Calls ask(id, position) for every agent.
     template <class Ask>
-    void forEachAgent(const Ask& ask) const {
-        for (const ProxyId id : ids_) {
-            ask(id, positionOf(grid_.box(id)));
+    void forEach(const Ask& ask) const {
+        for (const ProxyId id : ids) {
+            ask(id, positionOf(grid.box(id)));
         }
     }
 
-private:
-    float radius_;
-    Grid<float> grid_;
-    std::vector<ProxyId> ids_;  // by agent
+    float radius;
+    Grid<float> grid;
+    std::vector<ProxyId> ids;  // by agent
 };
 
-/// RarestColour, which counts exactly.
-class RarestColourSearch : public GridSearch {
-public:
-    using GridSearch::GridSearch;
-
-    void decide(std::span<const std::uint32_t> colours, std::span<std::uint32_t> chosen) override {
-        std::copy(colours.begin(), colours.end(), chosen.begin());
-        rarest_.update(grid(), radius(), ColourCounts().size(), chosen);
-    }
-    void forEach(Visit visit) override {
-        search_.take(grid(), radius());
-        search_.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
-            found_.clear();
-            for (const std::uint32_t neighbour : neighbours) {
-                found_.push_back(search_.id(neighbour).index);
-            }
-            visit(search_.id(agent).index, found_);
-        });
-    }
-
-private:
-    RarestColour<float> rarest_;
-    RadiusSearch<float> search_;
-    std::vector<std::uint32_t> found_;
-};
+/// RarestColour, which counts exactly; its lists are those of RadiusSearch.
+NeighbourSearch rarestColour(const NeighbourNeeds& needs) {
+    struct Filed : FiledAgents {
+        using FiledAgents::FiledAgents;
+        RarestColour<float> rarest;
+        RadiusSearch<float> search;
+        Found found;
+    };
+    const auto filed = std::make_shared<Filed>(needs);
+    return {[=](const AgentFrame& frame) { filed->take(frame); },
+            [=](Visit visit) {
+                RadiusSearch<float>& search = filed->search;
+                search.take(filed->grid, filed->radius);
+                search.forEach([&](std::uint32_t agent, Colours neighbours) {
+                    filed->found.clear();
+                    for (const std::uint32_t neighbour : neighbours) {
+                        filed->found.push_back(search.id(neighbour).index);
+                    }
+                    visit(search.id(agent).index, filed->found);
+                });
+            },
+            [=](Colours colours, Chosen chosen) {
+                std::copy(colours.begin(), colours.end(), chosen.begin());
+                filed->rarest.update(filed->grid, filed->radius, ColourCounts().size(), chosen);
+            }};
+}
 
 /// Decides from the lists of RadiusSearch.
-class RadiusLists : public RarestColourSearch {
-public:
-    using RarestColourSearch::RarestColourSearch;
+NeighbourSearch radiusLists(const NeighbourNeeds& needs) {
+    NeighbourSearch search = rarestColour(needs);
+    search.decide = {};
+    return search;
+}
 
-    void decide(std::span<const std::uint32_t> colours, std::span<std::uint32_t> chosen) override {
-        NeighbourSearch::decide(colours, chosen);
-    }
-};
+/// RarestColour in each period-th frame: its grid keeps the state of then, and its decisions stand.
+NeighbourSearch staleSearch(const NeighbourNeeds& needs, int period) {
+    struct State {
+        int frame = 0;
+        bool isDue = false;
+        Found decided;
+    };
+    const NeighbourSearch fresh = rarestColour(needs);
+    const auto state = std::make_shared<State>();
+    return {[=](const AgentFrame& frame) {
+                state->isDue = state->frame++ % period == 0;
+                if (state->isDue) {
+                    fresh.take(frame);
+                }
+            },
+            fresh.forEach,
+            [=](Colours colours, Chosen chosen) {
+                if (state->isDue) {
+                    state->decided.resize(chosen.size());
+                    fresh.decide(colours, state->decided);
+                }
+                std::copy(state->decided.begin(), state->decided.end(), chosen.begin());
+            }};
+}
 
 /// Agent by agent: find(grid, position, radius, self, found) lists an agent's neighbours.
 template <class Find>
-class AgentByAgent : public GridSearch {
-public:
-    explicit AgentByAgent(const NeighbourNeeds& needs, Find find = {})
-        : GridSearch(needs), find_(std::move(find)) {}
-
-    void forEach(Visit visit) override {
-        forEachAgent([&](ProxyId self, const Vector3<float>& position) {
-            found_.clear();
-            find_(grid(), position, radius(), self, found_);
-            visit(self.index, found_);
-        });
-    }
-
-private:
-    Find find_;
-    std::vector<std::uint32_t> found_;
-};
+NeighbourSearch agentByAgent(const std::shared_ptr<FiledAgents>& filed, Find find) {
+    return {[=](const AgentFrame& frame) { filed->take(frame); },
+            [=, found = Found()](Visit visit) mutable {
+                filed->forEach([&](ProxyId self, const Vector3<float>& position) {
+                    found.clear();
+                    find(filed->grid, position, filed->radius, self, found);
+                    visit(self.index, found);
+                });
+            }};
+}
 
 using ProximityFunction = QueryCost (*)(const Grid<float>&, const Vector3<float>&, float,
                                         std::vector<ProxyId>&, ProxyFilter, ProxyId);
@@ -139,7 +141,7 @@ struct Listed {
     std::vector<ProxyId> ids;
 
     void operator()(const Grid<float>& grid, const Vector3<float>& position, float radius,
-                    ProxyId self, std::vector<std::uint32_t>& found) {
+                    ProxyId self, Found& found) {
         function(grid, position, radius, ids, acceptAll, self);
         for (const ProxyId id : ids) {
             found.push_back(id.index);
@@ -149,7 +151,7 @@ struct Listed {
 
 /// Lists all but the agent itself, and ends the search after `most`.
 struct CollectAgents {
-    std::vector<std::uint32_t>& found;
+    Found& found;
     std::uint32_t self;
     std::size_t most = std::numeric_limits<std::size_t>::max();
 
@@ -166,7 +168,7 @@ struct CollectAgents {
 /// Whose boxes touch the ball's box.
 struct TouchingBoxes {
     void operator()(const Grid<float>& grid, const Vector3<float>& position, float radius,
-                    ProxyId self, std::vector<std::uint32_t>& found) const {
+                    ProxyId self, Found& found) const {
         CollectAgents collector{found, self.index};
         grid.visit(BoxRegion<float>{PositionRegion<float>(position, radius).bounds()}, collector);
     }
@@ -177,7 +179,7 @@ struct FirstFew {
     std::size_t most;
 
     void operator()(const Grid<float>& grid, const Vector3<float>& position, float radius,
-                    ProxyId self, std::vector<std::uint32_t>& found) const {
+                    ProxyId self, Found& found) const {
         CollectAgents collector{found, self.index, most};
         grid.visit(PositionRegion<float>(position, radius), collector);
     }
@@ -196,173 +198,139 @@ struct CollectColours {
 };
 
 /// As estimateWithin(), but those whom it would list are only counted.
-class CountedCells : public AgentByAgent<Listed<estimateWithin<float>>> {
-public:
-    using AgentByAgent::AgentByAgent;
-
-    void decide(std::span<const std::uint32_t> colours, std::span<std::uint32_t> chosen) override {
-        forEachAgent([&](ProxyId self, const Vector3<float>& position) {
+NeighbourSearch countedCells(const NeighbourNeeds& needs) {
+    const auto filed = std::make_shared<FiledAgents>(needs);
+    NeighbourSearch search = agentByAgent(filed, Listed<estimateWithin<float>>());
+    search.decide = [=](Colours colours, Chosen chosen) {
+        const Grid<float>& grid = filed->grid;
+        filed->forEach([&](ProxyId self, const Vector3<float>& position) {
             CollectColours collector{colours, self.index};
-            grid().visit(CellsRegion<float>(position, radius(), grid().cellSize()), collector);
+            grid.visit(CellsRegion<float>(position, filed->radius, grid.cellSize()), collector);
             chosen[self.index] = rarestOf(collector.counts);
         });
-    }
-};
-
-/// RarestColour in each period-th frame: its grid keeps the state of then, and its decisions stand.
-class StaleSearch : public RarestColourSearch {
-public:
-    StaleSearch(const NeighbourNeeds& needs, int period)
-        : RarestColourSearch(needs), period_(period) {}
-
-    void take(const AgentFrame& frame) override {
-        isDue_ = frame_++ % period_ == 0;
-        if (isDue_) {
-            RarestColourSearch::take(frame);
-        }
-    }
-    void decide(std::span<const std::uint32_t> colours, std::span<std::uint32_t> chosen) override {
-        if (isDue_) {
-            decided_.resize(chosen.size());
-            RarestColourSearch::decide(colours, decided_);
-        }
-        std::copy(decided_.begin(), decided_.end(), chosen.begin());
-    }
-
-private:
-    int period_;
-    int frame_ = 0;
-    bool isDue_ = false;
-    std::vector<std::uint32_t> decided_;
-};
+    };
+    return search;
+}
 
 // --- Of others -----------------------------------------------------------------------------------
 
 /// An agent lies in the buckets of all cells that its box touches (no cell is smaller than an
 /// agent: these are its corners'), and is counted as often as it is met. The indices are clamped
 /// to the map, which the printed loop leaves at its borders.
-class PaperProximity : public NeighbourSearch {
-public:
-    explicit PaperProximity(const NeighbourNeeds& needs)
-        : map_(needs.bounds, needs.cellSize),
-          offset_(static_cast<int>(needs.radius / needs.cellSize)) {}
-
-    void take(const AgentFrame& frame) override {
-        boxes_ = frame.boxes;
-        map_.refile(boxes_);
-    }
-
-    void forEach(Visit visit) override {
-        const PaperMap::Range all = map_.all();
-        for (std::uint32_t agent = 0; agent < boxes_.size(); ++agent) {
-            const Vector3<float> centre = boxes_[agent].center();
-            const PaperMap::Cell base = map_.cellAt(centre.x(), centre.z());
-            const int endX = std::min(all.highX + 1, base.x + offset_);
-            const int endZ = std::min(all.highZ + 1, base.z + offset_);
-            found_.clear();
-            for (int z = std::max(0, base.z - offset_); z < endZ; ++z) {
-                for (int x = std::max(0, base.x - offset_); x < endX; ++x) {
-                    const auto bucket = map_.objects(x, z);
-                    std::copy_if(bucket.begin(), bucket.end(), std::back_inserter(found_),
-                                 [agent](std::uint32_t other) { return other != agent; });
+NeighbourSearch paperProximity(const NeighbourNeeds& needs) {
+    struct Filed {
+        PaperMap map;
+        std::span<const Aabb<float>> boxes;
+        Found found;
+    };
+    const auto filed = std::make_shared<Filed>(Filed{{needs.bounds, needs.cellSize}, {}, {}});
+    const int offset = static_cast<int>(needs.radius / needs.cellSize);
+    return {[=](const AgentFrame& frame) {
+                filed->boxes = frame.boxes;
+                filed->map.refile(frame.boxes);
+            },
+            [=](Visit visit) {
+                auto& [map, boxes, found] = *filed;
+                const PaperMap::Range all = map.all();
+                for (std::uint32_t agent = 0; agent < boxes.size(); ++agent) {
+                    const Vector3<float> centre = boxes[agent].center();
+                    const PaperMap::Cell base = map.cellAt(centre.x(), centre.z());
+                    const PaperMap::Range cells{std::max(0, base.x - offset),
+                                                std::max(0, base.z - offset),
+                                                std::min(all.highX, base.x + offset - 1),
+                                                std::min(all.highZ, base.z + offset - 1)};
+                    found.clear();
+                    forEachCell(cells, [agent, &map = map, &found = found](int x, int z) {
+                        const auto bucket = map.objects(x, z);
+                        std::copy_if(bucket.begin(), bucket.end(), std::back_inserter(found),
+                                     [agent](std::uint32_t other) { return other != agent; });
+                    });
+                    visit(agent, found);
                 }
-            }
-            visit(agent, found_);
-        }
-    }
-
-private:
-    PaperMap map_;
-    int offset_;
-    std::span<const Aabb<float>> boxes_;
-    std::vector<std::uint32_t> found_;
-};
+            }};
+}
 
 btVector3 centreOf(const BulletBox& box) {
     return (box.min + box.max) / 2;
 }
 
-class BulletProximity : public NeighbourSearch {
-public:
-    explicit BulletProximity(const NeighbourNeeds& needs)
-        : radius_(needs.radius),
-          filled_(broadphaseKind("dbvt-deferred"), {needs.bounds, needs.agents, {}}) {}
+NeighbourSearch bulletProximity(const NeighbourNeeds& needs) {
+    struct Filed {
+        explicit Filed(const NeighbourNeeds& needs)
+            : radius(needs.radius),
+              broadphase(broadphaseKind("dbvt-deferred"), {needs.bounds, needs.agents, {}}) {}
 
-    void take(const AgentFrame& frame) override {
-        if (boxes_.empty()) {
-            for (std::uint32_t agent = 0; agent < frame.bulletBoxes.size(); ++agent) {
-                filled_.create(agent, frame.bulletBoxes[agent], {});
-            }
-        } else {
-            filled_.setAll(frame.bulletBoxes);
-        }
-        boxes_ = frame.bulletBoxes;
-    }
-
-    void forEach(Visit visit) override {
-        const btVector3 reach(radius_, radius_, radius_);
-        for (std::uint32_t agent = 0; agent < boxes_.size(); ++agent) {
-            found_.clear();
-            const btVector3 centre = centreOf(boxes_[agent]);
-            Near near(*this, centre, agent);
-            filled_.broadphase().aabbTest(centre - reach, centre + reach, near);
-            visit(agent, found_);
-        }
-    }
-
-private:
+        btScalar radius;
+        FilledBroadphase broadphase;
+        std::span<const BulletBox> boxes;
+        Found found;
+    };
     struct Near : btBroadphaseAabbCallback {
-        Near(BulletProximity& search, const btVector3& centre, std::uint32_t self)
-            : search_(search), centre_(centre), self_(self) {}
+        Near(Filed& all, std::uint32_t agent)
+            : filed(all), self(agent), centre(centreOf(all.boxes[agent])) {}
 
         bool process(const btBroadphaseProxy* proxy) override {
             const std::uint32_t other = FilledBroadphase::objectOf(*proxy);
-            const btVector3 way = centreOf(search_.boxes_[other]) - centre_;
-            if (other != self_ && way.length2() <= search_.radius_ * search_.radius_) {
-                search_.found_.push_back(other);
+            const btVector3 way = centreOf(filed.boxes[other]) - centre;
+            if (other != self && way.length2() <= filed.radius * filed.radius) {
+                filed.found.push_back(other);
             }
             return true;
         }
 
-    private:
-        BulletProximity& search_;
-        btVector3 centre_;
-        std::uint32_t self_;
+        Filed& filed;
+        std::uint32_t self;
+        btVector3 centre;
     };
-
-    btScalar radius_;
-    FilledBroadphase filled_;
-    std::span<const BulletBox> boxes_;
-    std::vector<std::uint32_t> found_;
-};
-
-template <class Search, class... Arguments>
-auto makes(Arguments... arguments) {
-    return [arguments...](const NeighbourNeeds& needs) {
-        return std::make_unique<Search>(needs, arguments...);
-    };
+    const auto filed = std::make_shared<Filed>(needs);
+    return {[=](const AgentFrame& frame) {
+                if (filed->boxes.empty()) {
+                    for (std::uint32_t agent = 0; agent < frame.bulletBoxes.size(); ++agent) {
+                        filed->broadphase.create(agent, frame.bulletBoxes[agent], {});
+                    }
+                } else {
+                    filed->broadphase.setAll(frame.bulletBoxes);
+                }
+                filed->boxes = frame.bulletBoxes;
+            },
+            [=](Visit visit) {
+                const btVector3 reach(filed->radius, filed->radius, filed->radius);
+                for (std::uint32_t agent = 0; agent < filed->boxes.size(); ++agent) {
+                    filed->found.clear();
+                    Near near(*filed, agent);
+                    filed->broadphase.broadphase().aabbTest(near.centre - reach,
+                                                            near.centre + reach, near);
+                    visit(agent, filed->found);
+                }
+            }};
 }
 
 }  // namespace
 
 std::vector<NeighbourMethod> neighbourMethods() {
-    using FindWithin = AgentByAgent<Listed<findWithin<float>>>;
-    using EstimateWithin = AgentByAgent<Listed<estimateWithin<float>>>;
-    using enum NeighbourPromise;
+    const auto oneByOne = [](const auto& find) {
+        return [find](const NeighbourNeeds& needs) {
+            return agentByAgent(std::make_shared<FiledAgents>(needs), find);
+        };
+    };
+    const auto stale = [](int period) {
+        return [period](const NeighbourNeeds& needs) { return staleSearch(needs, period); };
+    };
     return {
-        {"RarestColour, all at once", makes<RarestColourSearch>(), kExact, false},
-        {"RadiusSearch, listed", makes<RadiusLists>(), kExact, false},
-        {"findWithin", makes<FindWithin>(), kExact},
-        {"cells and boxes", makes<AgentByAgent<TouchingBoxes>>(), kComplete},
-        {"estimateWithin", makes<EstimateWithin>(), kEstimate},
-        {"cells, counted", makes<CountedCells>(), kEstimate},
-        {"first 4 found", makes<AgentByAgent<FirstFew>>(FirstFew{4})},
-        {"first 16 found", makes<AgentByAgent<FirstFew>>(FirstFew{16})},
-        {"RarestColour, every 2 frames", makes<StaleSearch>(2), kNone, false},
-        {"RarestColour, every 4 frames", makes<StaleSearch>(4), kNone, false},
-        {"RarestColour, every 8 frames", makes<StaleSearch>(8), kNone, false},
-        {"cells, as printed (paper)", makes<PaperProximity>(), kNone, true, kOfPaper},
-        {"btDbvtBroadphase, then distance", makes<BulletProximity>(), kExact, false, kOfBullet},
+        {"RarestColour, all at once", "ours exact", rarestColour},
+        {"RadiusSearch, listed", "ours exact", radiusLists},
+        {"findWithin", "ours exact uses_cells", oneByOne(Listed<findWithin<float>>())},
+        {"cells and boxes", "ours complete uses_cells", oneByOne(TouchingBoxes())},
+        {"estimateWithin", "ours complete estimate uses_cells",
+         oneByOne(Listed<estimateWithin<float>>())},
+        {"cells, counted", "ours complete estimate uses_cells", countedCells},
+        {"first 4 found", "ours uses_cells", oneByOne(FirstFew{4})},
+        {"first 16 found", "ours uses_cells", oneByOne(FirstFew{16})},
+        {"RarestColour, every 2 frames", "ours", stale(2)},
+        {"RarestColour, every 4 frames", "ours", stale(4)},
+        {"RarestColour, every 8 frames", "ours", stale(8)},
+        {"cells, as printed (paper)", "paper uses_cells", paperProximity},
+        {"btDbvtBroadphase, then distance", "bullet exact", bulletProximity},
     };
 }
 

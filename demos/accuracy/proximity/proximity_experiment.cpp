@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/proximity/proximity_experiment.hpp>
 
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/proximity/agent_scene.hpp>
-#include <demos/accuracy/timing.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <stdexcept>
 
@@ -39,6 +35,21 @@ AgentPlan agentPlan(const Crowd& crowd) {
     return {crowd.agents, crowd.side(), kAgentEdge, kStepByRadius * crowd.radius};
 }
 
+void decide(const NeighbourSearch& search, std::span<const std::uint32_t> colours,
+            std::span<std::uint32_t> chosen) {
+    if (search.decide) {
+        search.decide(colours, chosen);
+        return;
+    }
+    search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) {
+        ColourCounts counts{};
+        for (const std::uint32_t neighbour : neighbours) {
+            ++counts[colours[neighbour]];
+        }
+        chosen[agent] = rarestOf(counts);
+    });
+}
+
 /// The methods at work on a crowd, side by side.
 class Trial {
 public:
@@ -57,7 +68,7 @@ public:
         const NeighbourNeeds needs{crowd.agents, scene_.bounds(), static_cast<float>(crowd.radius),
                                    static_cast<float>(crowd.cellSize())};
         for (const NeighbourMethod& method : methods) {
-            if (crowd.hasAllMethods || method.usesCells) {
+            if (crowd.hasAllMethods || method.is("uses_cells")) {
                 entries_.push_back(
                     {method.name, method.make(needs), std::vector<std::uint32_t>(crowd.agents)});
             }
@@ -70,8 +81,7 @@ public:
             advance(frame);
             findTruth(frame, plan.mostJudgedAgents);
             for (Entry& entry : entries_) {
-                entry.search->take(frame.view());
-                entry.search->decide(colours_, entry.chosen);
+                step(entry, frame);
                 judge(entry);
             }
         }
@@ -84,8 +94,7 @@ public:
             methods.push_back(
                 {{{"trial", number_}, {"method", entry.method}}, [this, &frames, &entry] {
                      for (const Frame& frame : frames) {
-                         entry.search->take(frame.view());
-                         entry.search->decide(colours_, entry.chosen);
+                         step(entry, frame);
                      }
                  }});
         }
@@ -94,19 +103,17 @@ public:
                 advance(frame);
             }
         };
-        measureTimes(measured_, plan.rounds, 1, begin, methods, 1.0 / plan.framesTogether);
+        measureTimes(measured_, {plan.rounds, 1, 1.0 / plan.framesTogether}, begin, methods);
     }
 
 private:
     struct Frame {
         std::vector<Aabb<float>> boxes;
         std::vector<BulletBox> bulletBoxes;
-
-        [[nodiscard]] AgentFrame view() const { return {boxes, bulletBoxes}; }
     };
     struct Entry {
         std::string_view method;
-        std::unique_ptr<NeighbourSearch> search;
+        NeighbourSearch search;
         std::vector<std::uint32_t> chosen;
     };
     struct Truth {
@@ -118,6 +125,11 @@ private:
         scene_.advance();
         frame.boxes = scene_.boxes();
         toBulletBoxes(frame.boxes, frame.bulletBoxes);
+    }
+
+    void step(Entry& entry, const Frame& frame) const {
+        entry.search.take({frame.boxes, frame.bulletBoxes});
+        decide(entry.search, colours_, entry.chosen);
     }
 
     /// By looking at everybody, for agents that have all around them what others have: nearer to
@@ -159,20 +171,17 @@ private:
         std::size_t found = 0;
         std::size_t wrongly = 0;
         std::vector<std::uint32_t> named;
-        std::vector<std::uint32_t> common;
-        entry.search->forEach([&](std::uint32_t agent, std::span<const std::uint32_t> those) {
+        entry.search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> those) {
             if (!truths_[agent]) {
                 return;
             }
             named.assign(those.begin(), those.end());
             std::sort(named.begin(), named.end());
             named.erase(std::unique(named.begin(), named.end()), named.end());
-            common.clear();
-            std::ranges::set_intersection(named, truths_[agent]->neighbours,
-                                          std::back_inserter(common));
-            neighbours += truths_[agent]->neighbours.size();
-            found += common.size();
-            wrongly += named.size() - common.size();
+            const std::vector<std::uint32_t>& right = truths_[agent]->neighbours;
+            neighbours += right.size();
+            found += right.size() - countMissing(right, named);
+            wrongly += countMissing(named, right);
         });
         int decisions = 0;
         int wrong = 0;
@@ -247,18 +256,8 @@ double Crowd::side() const {
 
 Findings measureProximity(const ProximityPlan& plan, std::span<const NeighbourMethod> methods,
                           std::uint64_t seed, const TellProgress& tell) {
-    using enum NeighbourPromise;
     Measurements measured;
-    for (const NeighbourMethod& method : methods) {
-        const bool isEstimate = method.promise == kEstimate;
-        measured.add("methods", {{"number", &method - methods.data()},
-                                 {"method", method.name},
-                                 {"origin", method.origin},
-                                 {"exact", method.promise == kExact},
-                                 {"complete", method.promise == kComplete || isEstimate},
-                                 {"estimate", isEstimate},
-                                 {"uses_cells", method.usesCells}});
-    }
+    addMethods(methods, {"exact", "complete", "estimate", "uses_cells"}, measured);
     for (std::size_t i = 0; i < plan.crowds.size(); ++i) {
         const Crowd& crowd = plan.crowds[i];
         tell(static_cast<double>(i) / static_cast<double>(plan.crowds.size()), crowd.name);

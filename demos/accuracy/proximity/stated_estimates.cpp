@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/position_region.hpp>
-#include <demos/accuracy/proximity/agent_scene.hpp>
 #include <demos/accuracy/proximity/proximity_experiment.hpp>
 #include <integration/ai/proximity.hpp>
 

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/sweeps/sweep_experiment.hpp>
 
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/sweeps/sweep_scenes.hpp>
-#include <demos/accuracy/timing.hpp>
-
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 namespace hashphase::demos {
@@ -22,7 +17,7 @@ using Keys = std::vector<PairKey>;
 /// A method at work on a scene.
 struct Sweeping {
     const SweepMethod* method;
-    std::unique_ptr<SweepFinder> finder;
+    SweepFinder finder;
 };
 
 std::vector<Sweeping> sweepings(std::span<const SweepMethod> methods, const SweptFrame& frame) {
@@ -31,13 +26,6 @@ std::vector<Sweeping> sweepings(std::span<const SweepMethod> methods, const Swep
         all.push_back({&method, method.make(frame)});
     }
     return all;
-}
-
-std::size_t countIn(const Keys& a, const Keys& notInB) {
-    Keys difference;
-    std::set_difference(a.begin(), a.end(), notInB.begin(), notInB.end(),
-                        std::back_inserter(difference));
-    return difference.size();
 }
 
 /// Pairs of one mover at least that did not touch when the frame began; sorted.
@@ -50,11 +38,11 @@ void keepFresh(Keys& listed, std::uint32_t movers, const Keys& older) {
 
 /// How far the times of contact are off at worst: in frames, and as a share of them. Infinite where
 /// none is given.
-std::pair<double, double> worstTimes(const SweepMethod& method, const SweptFrame& frame,
+std::pair<double, double> worstTimes(const SweepFinder& finder, const SweptFrame& frame,
                                      const SweepTruth& truth) {
     std::pair<double, double> worst;
     for (std::size_t i = 0; i < truth.contacts.size(); ++i) {
-        const std::optional<double> time = method.contactTime(
+        const std::optional<double> time = finder.contactTime(
             frame.objects[firstOf(truth.contacts[i])], frame.objects[secondOf(truth.contacts[i])]);
         const double error =
             time ? truth.moments[i].errorOf(*time) : std::numeric_limits<double>::infinity();
@@ -71,31 +59,33 @@ struct Where {
     Datum motion;
 };
 
-/// Lets all methods do the frame, those that are slow only where its number is a multiple of their
-/// oneFrameIn, and says what they get wrong.
+constexpr int kPapersOneFrameIn = 32;
+
+/// Lets all methods do the frame, those that are slow only some of many, and says what they get wrong.
 void judge(std::span<const Sweeping> sweepings, const SweptFrame& frame, int number,
            const Where& where, Measurements& measured) {
     const SweepTruth truth = findTruth(frame);
     std::optional<Keys> ofFirstExact;
     for (const auto& [method, finder] : sweepings) {
-        if (number % method->oneFrameIn != 0) {
+        if (method->is("paper") && number % kPapersOneFrameIn != 0) {
             continue;
         }
-        finder->step(frame);
+        finder.step(frame);
         Keys listed;
-        const std::optional<SweepWork> work = finder->listPairs(listed);
+        const std::optional<SweepWork> work = finder.listPairs(listed);
         keepFresh(listed, frame.movers, truth.older);
-        const bool isCompared = method->isExact() && method->oneFrameIn == 1;
-        const auto [timeError, relativeTimeError] =
-            method->contactTime ? worstTimes(*method, frame, truth) : std::pair<double, double>();
+        const bool isCompared = method->is("compared");
+        const auto [timeError, relativeTimeError] = method->is("tells_time")
+                                                        ? worstTimes(finder, frame, truth)
+                                                        : std::pair<double, double>();
         measured.add("frames", {{"method", method->name},
                                 {"thickness", where.thickness},
                                 {"ratio", where.ratio},
                                 {"motion", where.motion},
                                 {"movers", frame.movers},
                                 {"contacts", truth.contacts.size()},
-                                {"missed", countIn(truth.contacts, listed)},
-                                {"invented", countIn(listed, truth.contacts)},
+                                {"missed", countMissing(truth.contacts, listed)},
+                                {"invented", countMissing(listed, truth.contacts)},
                                 {"unlike", isCompared && ofFirstExact && listed != *ofFirstExact},
                                 {"time_error", timeError},
                                 {"relative_time_error", relativeTimeError},
@@ -145,7 +135,7 @@ void shootBodies(const SweepPlan& plan, std::uint64_t seed, Measurements& measur
 
 void moveFast(const SweepPlan& plan, std::uint64_t seed, std::span<const SweepMethod> methods,
               const std::function<void(double)>& tell, Measurements& measured) {
-    constexpr int warmUp = 4;
+    const TimedFrames timed{plan.timedFrames, 4};
     for (std::size_t i = 0; i < plan.motions.size(); ++i) {
         const FastMotion& motion = plan.motions[i];
         measured.add("motions", {{"motion", motion.cells}, {"judged_frames", motion.judgedFrames}});
@@ -155,23 +145,18 @@ void moveFast(const SweepPlan& plan, std::uint64_t seed, std::span<const SweepMe
             judge(all, scene.frame(), 0, {{}, {}, motion.cells}, measured);
             scene.advance();
         }
-        std::vector<std::function<void()>> steps;
-        for (const Sweeping& each : all) {
-            steps.emplace_back([&] { each.finder->step(scene.frame()); });
+        std::vector<TimedMethod> steps;
+        for (const auto& [method, finder] : all) {
+            steps.push_back({{{"method", method->name}, {"motion", motion.cells}},
+                             [&scene, &step = finder.step] { step(scene.frame()); }});
         }
         const auto begin = [&](int frame) {
             scene.advance();
-            tell((static_cast<double>(i) + frame / static_cast<double>(plan.timedFrames + warmUp)) /
+            tell((static_cast<double>(i) +
+                  frame / static_cast<double>(timed.frames + timed.warmUp)) /
                  static_cast<double>(plan.motions.size()));
         };
-        const auto times = timesInTurn(plan.timedFrames, warmUp, begin, steps);
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            for (const double milliseconds : times[k]) {
-                measured.add("times", {{"method", all[k].method->name},
-                                       {"motion", motion.cells},
-                                       {"ms", milliseconds}});
-            }
-        }
+        measureTimes(measured, timed, begin, steps);
     }
 }
 
@@ -194,17 +179,9 @@ Findings findSweeps(const SweepPlan& plan, std::uint64_t seed, std::span<const S
                           {"movers", plan.movers},
                           {"timed_frames", plan.timedFrames},
                           {"seed", seed}});
-    for (const SweepMethod& method : methods) {
-        measured.add("methods", {{"number", &method - methods.data()},
-                                 {"method", method.name},
-                                 {"origin", method.origin},
-                                 {"misses_nothing", method.missesNothing},
-                                 {"invents_nothing", method.inventsNothing},
-                                 {"exact", method.isExact()},
-                                 {"compared", method.isExact() && method.oneFrameIn == 1},
-                                 {"discrete", method.isDiscrete},
-                                 {"tells_time", method.contactTime != nullptr}});
-    }
+    addMethods(methods,
+               {"misses_nothing", "invents_nothing", "exact", "compared", "discrete", "tells_time"},
+               measured);
     shootAtWalls(
         plan, seed, methods, [&](double share) { tell(shareOfWalls * share, "bullets at walls"); },
         measured);

@@ -19,42 +19,38 @@ using Moving = MovingBox<float>;
 
 /// With Sweep::none it knows the boxes at the end of the frame, as every broadphase does that knows
 /// nothing of motion. In an empty grid, ids count from 0.
-class GridFinder final : public SweepFinder {
-public:
-    GridFinder(Sweep sweep, const SweptFrame& first) : sweep_(sweep) {
-        for (std::uint32_t i = 0; i < first.objects.size(); ++i) {
-            ids_.push_back(grid_.add(first.objects[i].box,
-                                     i < first.movers ? Mobility::mobile : Mobility::resting));
-        }
+SweepFinder gridFinder(Sweep sweep, const SweptFrame& first) {
+    struct Filed {
+        Grid<float> grid;
+        Sweeps<float> sweeps{grid};
+        Pairs<float> pairs{grid, &sweeps};
+        std::vector<ProxyId> ids;
+    };
+    const auto filed = std::make_shared<Filed>();
+    for (std::uint32_t i = 0; i < first.objects.size(); ++i) {
+        filed->ids.push_back(filed->grid.add(
+            first.objects[i].box, i < first.movers ? Mobility::mobile : Mobility::resting));
     }
-
-    void step(const SweptFrame& frame) override {
-        for (std::uint32_t i = 0; i < frame.movers; ++i) {
-            const Moving& mover = frame.objects[i];
-            grid_.move(ids_[i], sweep_ == Sweep::none ? endBox(mover) : mover.box);
-            sweeps_.set(ids_[i], mover.displacement, sweep_);
-        }
-        pairs_.update([](ProxyId, ProxyId) { return true; });
-    }
-
-    std::optional<SweepWork> listPairs(std::vector<PairKey>& pairs) const override {
-        std::vector<ProxyPair> all;
-        pairs_.collect(all);
-        for (const ProxyPair& pair : all) {
-            pairs.push_back(pairKey(pair.first.index, pair.second.index));
-        }
-        const SweepCost& swept = sweeps_.lastCost();
-        return SweepWork{swept.segments + swept.rays,
-                         swept.boxesTested + swept.contactsTested + pairs_.lastCost().boxesTested};
-    }
-
-private:
-    Sweep sweep_;
-    Grid<float> grid_;
-    Sweeps<float> sweeps_{grid_};
-    Pairs<float> pairs_{grid_, &sweeps_};
-    std::vector<ProxyId> ids_;
-};
+    return {
+        [=](const SweptFrame& frame) {
+            for (std::uint32_t i = 0; i < frame.movers; ++i) {
+                const Moving& mover = frame.objects[i];
+                filed->grid.move(filed->ids[i], sweep == Sweep::none ? endBox(mover) : mover.box);
+                filed->sweeps.set(filed->ids[i], mover.displacement, sweep);
+            }
+            filed->pairs.update([](ProxyId, ProxyId) { return true; });
+        },
+        [=](std::vector<PairKey>& pairs) {
+            std::vector<ProxyPair> all;
+            filed->pairs.collect(all);
+            for (const ProxyPair& pair : all) {
+                pairs.push_back(pairKey(pair.first.index, pair.second.index));
+            }
+            const SweepCost& swept = filed->sweeps.lastCost();
+            return SweepWork{swept.segments + swept.rays, swept.boxesTested + swept.contactsTested +
+                                                              filed->pairs.lastCost().boxesTested};
+        }};
+}
 
 // --- On the paper's grid -------------------------------------------------------------------------
 //
@@ -117,7 +113,7 @@ enum class Raster : std::uint8_t { box, thinLine, thickLine };
 
 /// As the paper has it, what shares a column counts if the boxes around the ways overlap; of the
 /// thick line, firstContact() decides.
-class ColumnFinder final : public SweepFinder {
+class ColumnFinder {
 public:
     ColumnFinder(Raster raster, const SweptFrame& first)
         : raster_(raster), columns_(first.objects.size()), lastSeenBy_(first.objects.size()) {
@@ -127,7 +123,7 @@ public:
         columns_.keepFiled();
     }
 
-    void step(const SweptFrame& frame) override {
+    void step(const SweptFrame& frame) {
         columns_.unfile();
         pairs_.clear();
         work_ = {};
@@ -146,7 +142,7 @@ public:
         }
     }
 
-    std::optional<SweepWork> listPairs(std::vector<PairKey>& pairs) const override {
+    SweepWork listPairs(std::vector<PairKey>& pairs) const {
         pairs.insert(pairs.end(), pairs_.begin(), pairs_.end());
         return work_;
     }
@@ -178,6 +174,12 @@ private:
     SweepWork work_;
 };
 
+SweepFinder columnFinder(Raster raster, const SweptFrame& first) {
+    const auto finder = std::make_shared<ColumnFinder>(raster, first);
+    return {[=](const SweptFrame& frame) { finder->step(frame); },
+            [=](std::vector<PairKey>& pairs) { return finder->listPairs(pairs); }};
+}
+
 // --- Of Bullet -----------------------------------------------------------------------------------
 
 /// The boxes at the end of the frame, without the pairs that btDbvtBroadphase keeps though they
@@ -185,111 +187,86 @@ private:
 /// m_useContinuous has it; and these with firstContact() for every pair that is listed.
 enum class BulletSweep : std::uint8_t { discrete, united, unitedAndTested };
 
-class BulletFinder final : public SweepFinder {
-public:
-    BulletFinder(BulletSweep sweep, const SweptFrame& first)
-        : sweep_(sweep), broadphase_(dbvt(), {Aabb<float>(), first.objects.size()}) {
-        for (std::uint32_t i = 0; i < first.objects.size(); ++i) {
-            broadphase_.create(i, knownBox(first.objects[i]), {});
+BulletBox knownBox(BulletSweep sweep, const Moving& moving) {
+    const Aabb<float> box = sweep == BulletSweep::discrete ? endBox(moving) : wayBox(moving);
+    return {toBullet(box.min()), toBullet(box.max())};
+}
+
+/// Appends the pairs of the cache that count.
+template <class Counts>
+void listIf(const FilledBroadphase& filled, const Counts& counts, std::vector<PairKey>& pairs) {
+    const auto& all = filled.broadphase().getOverlappingPairCache()->getOverlappingPairArray();
+    for (int i = 0; i < all.size(); ++i) {
+        const std::uint32_t a = FilledBroadphase::objectOf(*all[i].m_pProxy0);
+        const std::uint32_t b = FilledBroadphase::objectOf(*all[i].m_pProxy1);
+        if (counts(a, b, all[i])) {
+            pairs.push_back(pairKey(a, b));
         }
     }
+}
 
-    void step(const SweptFrame& frame) override {
-        for (std::uint32_t i = 0; i < frame.movers; ++i) {
-            broadphase_.set(i, knownBox(frame.objects[i]));
-        }
-        broadphase_.findPairs();
-        if (sweep_ == BulletSweep::unitedAndTested) {
-            touching_.clear();
-            list(touching_, [&](std::uint32_t a, std::uint32_t b, const btBroadphasePair&) {
-                return std::min(a, b) < frame.movers &&
-                       firstContact(frame.objects[a], frame.objects[b]).has_value();
-            });
-        }
+SweepFinder bulletFinder(BulletSweep sweep, const SweptFrame& first) {
+    const auto filled = std::make_shared<FilledBroadphase>(
+        broadphaseKind("dbvt"), BroadphaseNeeds{Aabb<float>(), first.objects.size()});
+    for (std::uint32_t i = 0; i < first.objects.size(); ++i) {
+        filled->create(i, knownBox(sweep, first.objects[i]), {});
     }
-
-    std::optional<SweepWork> listPairs(std::vector<PairKey>& pairs) const override {
-        if (sweep_ == BulletSweep::unitedAndTested) {
-            pairs.insert(pairs.end(), touching_.begin(), touching_.end());
-        } else {
-            list(pairs, [&](std::uint32_t, std::uint32_t, const btBroadphasePair& pair) {
-                return sweep_ == BulletSweep::united ||
+    const auto touching = std::make_shared<std::vector<PairKey>>();
+    return {
+        [=](const SweptFrame& frame) {
+            for (std::uint32_t i = 0; i < frame.movers; ++i) {
+                filled->set(i, knownBox(sweep, frame.objects[i]));
+            }
+            filled->findPairs();
+            if (sweep == BulletSweep::unitedAndTested) {
+                const auto touch = [&](std::uint32_t a, std::uint32_t b, const auto&) {
+                    return std::min(a, b) < frame.movers &&
+                           firstContact(frame.objects[a], frame.objects[b]).has_value();
+                };
+                touching->clear();
+                listIf(*filled, touch, *touching);
+            }
+        },
+        [=](std::vector<PairKey>& pairs) -> std::optional<SweepWork> {
+            if (sweep == BulletSweep::unitedAndTested) {
+                pairs.insert(pairs.end(), touching->begin(), touching->end());
+                return std::nullopt;
+            }
+            const auto counts = [=](std::uint32_t, std::uint32_t, const btBroadphasePair& pair) {
+                return sweep == BulletSweep::united ||
                        TestAabbAgainstAabb2(pair.m_pProxy0->m_aabbMin, pair.m_pProxy0->m_aabbMax,
                                             pair.m_pProxy1->m_aabbMin, pair.m_pProxy1->m_aabbMax);
-            });
-        }
-        return std::nullopt;
-    }
+            };
+            listIf(*filled, counts, pairs);
+            return std::nullopt;
+        }};
+}
 
-private:
-    static const BroadphaseKind& dbvt() {
-        const auto kinds = broadphaseKinds();
-        return *std::find_if(kinds.begin(), kinds.end(),
-                             [](const BroadphaseKind& each) { return each.name == "dbvt"; });
-    }
-
-    [[nodiscard]] BulletBox knownBox(const Moving& moving) const {
-        const Aabb<float> box = sweep_ == BulletSweep::discrete ? endBox(moving) : wayBox(moving);
-        return {toBullet(box.min()), toBullet(box.max())};
-    }
-
-    /// Appends the pairs of the cache that count.
-    template <class Counts>
-    void list(std::vector<PairKey>& pairs, const Counts& counts) const {
-        const auto& all =
-            broadphase_.broadphase().getOverlappingPairCache()->getOverlappingPairArray();
-        for (int i = 0; i < all.size(); ++i) {
-            const std::uint32_t a = FilledBroadphase::objectOf(*all[i].m_pProxy0);
-            const std::uint32_t b = FilledBroadphase::objectOf(*all[i].m_pProxy1);
-            if (counts(a, b, all[i])) {
-                pairs.push_back(pairKey(a, b));
-            }
-        }
-    }
-
-    BulletSweep sweep_;
-    FilledBroadphase broadphase_;
-    std::vector<PairKey> touching_;
-};
-
-/// What a method promises: every contact; contacts only, and every one; only some, those at the
-/// end.
-enum class Promise : std::uint8_t { neither, allContacts, both, contactsAtTheEnd };
-
-template <class Finder, class Kind>
-SweepMethod method(std::string name, std::string origin, Kind kind, Promise promise) {
-    SweepMethod made;
-    made.name = std::move(name);
-    made.oneFrameIn = origin == "paper" ? 32 : 1;
-    made.origin = std::move(origin);
-    made.make = [kind](const SweptFrame& first) { return std::make_unique<Finder>(kind, first); };
-    made.isDiscrete = promise == Promise::contactsAtTheEnd;
-    made.missesNothing = promise == Promise::allContacts || promise == Promise::both;
-    made.inventsNothing = promise == Promise::both || made.isDiscrete;
-    if (made.isExact()) {
-        made.contactTime = firstContact<float>;
-    }
-    return made;
+template <auto find, class Kind>
+auto of(Kind kind) {
+    return [kind](const SweptFrame& first) { return find(kind, first); };
 }
 
 }  // namespace
 
 std::vector<SweepMethod> sweepMethods() {
-    using enum Promise;
-    const auto grid = method<GridFinder, Sweep>;
-    const auto columns = method<ColumnFinder, Raster>;
-    const auto bullet = method<BulletFinder, BulletSweep>;
+    const std::string all = " misses_nothing";
+    const std::string atTheEnd = " discrete invents_nothing";
+    const std::string exact = all + " invents_nothing exact tells_time";
     return {
-        grid("discrete (Sweep::none)", "ours", Sweep::none, contactsAtTheEnd),
-        grid("Sweep::automatic", "ours", Sweep::automatic, both),
-        grid("Sweep::line", "ours", Sweep::line, both),
-        grid("Sweep::box", "ours", Sweep::box, both),
-        columns("thick line of cells, tested", "paper", Raster::thickLine, both),
-        columns("paper: box of cells", "paper", Raster::box, allContacts),
-        columns("paper: line of cells", "paper", Raster::thinLine, neither),
-        bullet("btDbvtBroadphase, discrete", "bullet", BulletSweep::discrete, contactsAtTheEnd),
-        bullet("btDbvtBroadphase, united", "bullet", BulletSweep::united, allContacts),
-        bullet("btDbvtBroadphase, united, tested", "bullet", BulletSweep::unitedAndTested, both)};
+        {"discrete (Sweep::none)", "ours" + atTheEnd, of<gridFinder>(Sweep::none)},
+        {"Sweep::automatic", "ours compared" + exact, of<gridFinder>(Sweep::automatic)},
+        {"Sweep::line", "ours compared" + exact, of<gridFinder>(Sweep::line)},
+        {"Sweep::box", "ours compared" + exact, of<gridFinder>(Sweep::box)},
+        {"thick line of cells, tested", "paper" + exact, of<columnFinder>(Raster::thickLine)},
+        {"paper: box of cells", "paper" + all, of<columnFinder>(Raster::box)},
+        {"paper: line of cells", "paper", of<columnFinder>(Raster::thinLine)},
+        {"btDbvtBroadphase, discrete", "bullet" + atTheEnd,
+         of<bulletFinder>(BulletSweep::discrete)},
+        {"btDbvtBroadphase, united", "bullet" + all, of<bulletFinder>(BulletSweep::united)},
+        {"btDbvtBroadphase, united, tested", "bullet compared" + exact,
+         of<bulletFinder>(BulletSweep::unitedAndTested)},
+    };
 }
 
 }  // namespace hashphase::demos

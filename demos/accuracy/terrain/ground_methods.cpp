@@ -26,25 +26,23 @@ GroundFinder oneByOne(const Stand& standing) {
     };
 }
 
+Vector3<float> normalOf(const TriangleGround& mesh, std::size_t triangle) {
+    const Vector3<float> ab = mesh.corner(triangle, 1) - mesh.corner(triangle, 0);
+    return ab.cross(mesh.corner(triangle, 2) - mesh.corner(triangle, 0)).normalized();
+}
+
 /// The paper's terrain: all triangles in a map of cells, the one that has the point within its
 /// three corners on the map, the height between them. A point that rounding puts outside of both
 /// triangles at an edge has none. The paper lifts the sphere by its radius; what is right on a
 /// slope without end is to divide by the normal's height.
-GroundFinder paperGround(const GroundMesh& mesh, float cellSize, bool mindsSlope) {
-    const auto map = std::make_shared<PaperMap>(mesh.triangleBoxes(), cellSize);
+GroundFinder paperGround(const TriangleGround& mesh, float cellSize, bool mindsSlope) {
+    const auto map = std::make_shared<PaperMap>(mesh.boxes, cellSize);
     return oneByOne([=](const Vector3<float>& p, float radius) -> std::optional<Standing> {
         const PaperMap::Cell cell = map->cellAt(p.x(), p.z());
         for (const std::uint32_t triangle : map->objects(cell.x, cell.z)) {
-            const Vector3<float>& a = mesh.corner(triangle, 0);
-            const Vector3<float> ab = mesh.corner(triangle, 1) - a;
-            const Vector3<float> ac = mesh.corner(triangle, 2) - a;
-            const Vector3<float> ap = p - a;
-            const float area = ab.x() * ac.z() - ab.z() * ac.x();
-            const float u = (ap.x() * ac.z() - ap.z() * ac.x()) / area;
-            const float v = (ab.x() * ap.z() - ab.z() * ap.x()) / area;
-            if (u >= 0 && v >= 0 && u + v <= 1) {
-                const float up = mindsSlope ? std::abs(ab.cross(ac).normalized().y()) : 1.0F;
-                return Standing{a.y() + u * ab.y() + v * ac.y() + radius / up, triangle};
+            if (const auto height = mesh.heightAt(triangle, p.x(), p.z())) {
+                const float up = mindsSlope ? std::abs(normalOf(mesh, triangle).y()) : 1.0F;
+                return Standing{*height + radius / up, triangle};
             }
         }
         return std::nullopt;
@@ -52,18 +50,18 @@ GroundFinder paperGround(const GroundMesh& mesh, float cellSize, bool mindsSlope
 }
 
 /// The library's. Points ask for the surface.
-GroundFinder terrainGround(const GroundMesh& mesh, float cellSize, bool allAtOnce) {
+GroundFinder terrainGround(const TriangleGround& mesh, float cellSize, bool allAtOnce) {
     struct Filed {
         Grid<float> grid;
-        Terrain<float> terrain{grid};
-        std::vector<Terrain<float>::Found> grounds;
+        hashphase::Terrain<float> terrain{grid};
+        std::vector<hashphase::Terrain<float>::Found> grounds;
 
         explicit Filed(double size) : grid({.cellSize = size}) {}
     };
     const auto filed = std::make_shared<Filed>(static_cast<double>(cellSize));
     filed->terrain.add(mesh.vertices, mesh.indices);
     filed->grid.update();
-    const auto standing = [](const Terrain<float>::Found& ground) {
+    const auto standing = [](const hashphase::Terrain<float>::Found& ground) {
         return ground ? std::optional(Standing{ground->height, ground->triangle}) : std::nullopt;
     };
     if (!allAtOnce) {
@@ -82,10 +80,10 @@ GroundFinder terrainGround(const GroundMesh& mesh, float cellSize, bool allAtOnc
 // --- What programs do that have Bullet -----------------------------------------------------------
 
 struct BulletMesh {
-    explicit BulletMesh(const GroundMesh& mesh)
+    explicit BulletMesh(const TriangleGround& mesh)
         : vertices(mesh.vertices),
           indices(mesh.indices.begin(), mesh.indices.end()),
-          array(static_cast<int>(mesh.triangles()), indices.data(), 3 * sizeof(int),
+          array(static_cast<int>(mesh.boxes.size()), indices.data(), 3 * sizeof(int),
                 static_cast<int>(vertices.size()), vertices.data()->data(), sizeof(Vector3<float>)),
           shape(&array, true) {}
 
@@ -98,15 +96,15 @@ struct BulletMesh {
 /// The vertices' heights, without their places. Bullet puts the middle of the range that it is told
 /// at 0.
 struct BulletHeightfield {
-    explicit BulletHeightfield(const GroundMesh& mesh)
+    explicit BulletHeightfield(const TriangleGround& mesh)
         : reach(mesh.bounds().min().cwiseAbs().cwiseMax(mesh.bounds().max().cwiseAbs()).y() + 1) {
         for (const Vector3<float>& vertex : mesh.vertices) {
             heights.push_back(vertex.y());
         }
         shape = std::make_unique<btHeightfieldTerrainShape>(
-            GroundMesh::kQuads + 1, GroundMesh::kQuads + 1,
-            static_cast<const float*>(heights.data()), -reach, reach, 1, false);
-        shape->setLocalScaling({GroundMesh::kEdge, 1, GroundMesh::kEdge});
+            kGroundQuads + 1, kGroundQuads + 1, static_cast<const float*>(heights.data()), -reach,
+            reach, 1, false);
+        shape->setLocalScaling({kGroundEdge, 1, kGroundEdge});
         shape->buildAccelerator();
     }
 
@@ -124,7 +122,7 @@ struct Stop {
 
 /// Each sphere by itself: stop(from, to, radius), nothing without ground, on the way straight down.
 template <class FindStop>
-GroundFinder straightDown(const GroundMesh& mesh, const FindStop& findStop) {
+GroundFinder straightDown(const TriangleGround& mesh, const FindStop& findStop) {
     const float below = mesh.bounds().min().y() - 1;
     return oneByOne([=](const Vector3<float>& center, float radius) {
         const btVector3 from = toBullet(center);
@@ -157,7 +155,7 @@ struct NearestHit : btTriangleRaycastCallback {
 };
 
 /// A ray; then up by the radius, or by what is right on a slope.
-GroundFinder rayAtMesh(const GroundMesh& mesh, bool mindsSlope) {
+GroundFinder rayAtMesh(const TriangleGround& mesh, bool mindsSlope) {
     const auto filed = std::make_shared<BulletMesh>(mesh);
     return straightDown(mesh, [=](const btVector3& from, const btVector3& to, float radius) {
         const NearestHit hit(filed->shape, from, to);
@@ -168,7 +166,7 @@ GroundFinder rayAtMesh(const GroundMesh& mesh, bool mindsSlope) {
     });
 }
 
-GroundFinder rayAtHeightfield(const GroundMesh& mesh, float /*cellSize*/) {
+GroundFinder rayAtHeightfield(const TriangleGround& mesh, float /*cellSize*/) {
     const auto filed = std::make_shared<BulletHeightfield>(mesh);
     return straightDown(mesh, [=](const btVector3& from, const btVector3& to, float radius) {
         const NearestHit hit(*filed->shape, from, to);
@@ -178,9 +176,9 @@ GroundFinder rayAtHeightfield(const GroundMesh& mesh, float /*cellSize*/) {
 }
 
 /// btCollisionWorld::convexSweepTest() of the sphere.
-GroundFinder sweepDown(const GroundMesh& mesh, float /*cellSize*/) {
+GroundFinder sweepDown(const TriangleGround& mesh, float /*cellSize*/) {
     struct Filed {
-        explicit Filed(const GroundMesh& ground) : mesh(ground) {
+        explicit Filed(const TriangleGround& ground) : mesh(ground) {
             object.setCollisionShape(&mesh.shape);
             world.addCollisionObject(&object);
         }
@@ -206,36 +204,29 @@ GroundFinder sweepDown(const GroundMesh& mesh, float /*cellSize*/) {
 }  // namespace
 
 std::vector<GroundMethod> groundMethods() {
+    using Mesh = const TriangleGround&;
     const auto paper = [](bool mindsSlope) {
-        return
-            [=](const GroundMesh& mesh, float size) { return paperGround(mesh, size, mindsSlope); };
+        return [=](Mesh mesh, float size) { return paperGround(mesh, size, mindsSlope); };
+    };
+    const auto terrain = [](bool allAtOnce, bool takesCells) {
+        return [=](Mesh mesh, float size) {
+            return terrainGround(mesh, takesCells ? size : 0, allAtOnce);
+        };
     };
     const auto ray = [](bool mindsSlope) {
-        return [=](const GroundMesh& mesh, float) { return rayAtMesh(mesh, mindsSlope); };
-    };
-    const auto ours = [&](std::string name, bool allAtOnce, bool takesCells) {
-        return GroundMethod{.name = std::move(name),
-                            .make =
-                                [=](const GroundMesh& mesh, float size) {
-                                    return terrainGround(mesh, takesCells ? size : 0, allAtOnce);
-                                },
-                            .isOurs = true,
-                            .mustRest = true,
-                            .takesCells = takesCells};
+        return [=](Mesh mesh, float) { return rayAtMesh(mesh, mindsSlope); };
     };
     return {
-        {.name = "paper: height + r",
-         .make = paper(false),
-         .sinksByLine = true,
-         .takesCells = true},
-        {.name = "height + r / n_y", .make = paper(true), .takesCells = true},
-        ours("Terrain, one by one", false, false),
-        ours("Terrain, all at once", true, false),
-        ours("Terrain, all at once, fixed cells", true, true),
-        {.name = "Bullet: ray at mesh, + r", .make = ray(false)},
-        {.name = "Bullet: ray at mesh, + r / n_y", .make = ray(true)},
-        {.name = "Bullet: ray at heightfield, + r", .make = rayAtHeightfield, .findsPoints = false},
-        {.name = "Bullet: sphere swept down", .make = sweepDown, .findsPoints = false},
+        {"paper: height + r", "paper sinks_by_line takes_cells finds_points", paper(false)},
+        {"height + r / n_y", "others takes_cells finds_points", paper(true)},
+        {"Terrain, one by one", "ours must_rest finds_points", terrain(false, false)},
+        {"Terrain, all at once", "ours must_rest finds_points", terrain(true, false)},
+        {"Terrain, all at once, fixed cells", "ours must_rest takes_cells finds_points",
+         terrain(true, true)},
+        {"Bullet: ray at mesh, + r", "bullet finds_points", ray(false)},
+        {"Bullet: ray at mesh, + r / n_y", "bullet finds_points", ray(true)},
+        {"Bullet: ray at heightfield, + r", "bullet", rayAtHeightfield},
+        {"Bullet: sphere swept down", "bullet", sweepDown},
     };
 }
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/terrain/terrain_experiment.hpp>
 
-#include <demos/accuracy/experiments.hpp>
-#include <demos/accuracy/timing.hpp>
 #include <demos/scenes/random.hpp>
-#include <demos/scenes/terrain.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +14,9 @@ constexpr std::string_view kTerrainDeclaration =
 #include <demos/accuracy/terrain/terrain.sql>
     ;
 
-constexpr float kRoom = GroundMesh::kHalf - 2;  // no sphere reaches the border
-constexpr float kAbove = 2;                     // where spheres ask from, above where they rest [m]
-constexpr float kUsualCell = 2;                 // [m]
+constexpr float kRoom = kGroundHalf - 2;  // no sphere reaches the border
+constexpr float kAbove = 2;               // where spheres ask from, above where they rest [m]
+constexpr float kUsualCell = 2;           // [m]
 
 double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
@@ -29,18 +26,18 @@ double radians(double degrees) {
 struct GroundScene {
     std::string_view kind;
     double slope;  // [degrees]; 0 for hills
-    GroundMesh mesh;
+    TriangleGround mesh;
 };
 
 GroundScene slopeOf(double degrees) {
     const auto rise = static_cast<float>(std::tan(radians(degrees)));
-    return {"slope", degrees, GroundMesh([rise](float x, float) { return rise * x; })};
+    return {"slope", degrees, groundOfHeights([rise](float x, float) { return rise * x; })};
 }
 
 /// Flat, up, flat, down, each over 4 m.
 GroundScene terracesOf(double degrees) {
     const auto rise = static_cast<float>(std::tan(radians(degrees)));
-    return {"terraces", degrees, GroundMesh([rise](float x, float) {
+    return {"terraces", degrees, groundOfHeights([rise](float x, float) {
                 const float along = x - 16 * std::floor(x / 16);
                 return rise * std::clamp(std::min(along - 4, 16 - along), 0.0F, 4.0F);
             })};
@@ -51,7 +48,7 @@ GroundScene hillsOf(float jitter, std::uint64_t seed) {
     const auto height = [hills = Terrain(seed)](float x, float z) {
         return steepness * hills.height(x, z);
     };
-    return {"hills", 0, GroundMesh(height, jitter, seed)};
+    return {"hills", 0, groundOfHeights(height, jitter, seed)};
 }
 
 SphereBatch randomSpheres(std::size_t count, float height, Random& random) {
@@ -71,12 +68,13 @@ struct Contestant {
     GroundFinder find;
 };
 
-std::vector<Contestant> contestants(const GroundMesh& mesh, std::span<const GroundMethod> methods,
+std::vector<Contestant> contestants(const TriangleGround& mesh,
+                                    std::span<const GroundMethod> methods,
                                     std::span<const float> cellSizes) {
     std::vector<Contestant> all;
     for (const GroundMethod& method : methods) {
         for (const float cellSize : cellSizes) {
-            if (method.takesCells || cellSize == kUsualCell) {
+            if (method.is("takes_cells") || cellSize == kUsualCell) {
                 all.push_back({&method, cellSize, method.make(mesh, cellSize)});
             }
         }
@@ -123,30 +121,23 @@ void rest(const GroundScene& ground, std::span<const Contestant> contestants, st
 
 void time(const GroundScene& ground, std::span<const Contestant> contestants,
           const TerrainPlan& plan, Random& random, Measurements& measured) {
-    constexpr int warmUp = 2;
     SphereBatch spheres;
     std::vector<std::optional<Standing>> found(plan.spheresPerFrame);
-    std::vector<std::function<void()>> runs;
+    std::vector<TimedMethod> methods;
     for (const Contestant& each : contestants) {
-        runs.emplace_back([&] { each.find(spheres, found); });
+        methods.push_back({{{"method", each.method->name}, {"cell", each.cellSize}},
+                           [&] { each.find(spheres, found); }});
     }
     const float height = ground.mesh.bounds().max().y() + kAbove;
-    const auto times = timesInTurn(
-        plan.frames, warmUp,
-        [&](int) { spheres = randomSpheres(plan.spheresPerFrame, height, random); }, runs);
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-        for (const double milliseconds : times[i]) {
-            measured.add("times", {{"method", contestants[i].method->name},
-                                   {"cell", contestants[i].cellSize},
-                                   {"ms", milliseconds}});
-        }
-    }
+    measureTimes(
+        measured, {plan.frames, 2},
+        [&](int) { spheres = randomSpheres(plan.spheresPerFrame, height, random); }, methods);
 }
 
 /// A point of the map at that place of a random triangle.
-Vector3<float> pointAt(const GroundMesh& mesh, std::string_view place, Random& random) {
+Vector3<float> pointAt(const TriangleGround& mesh, std::string_view place, Random& random) {
     const auto triangle =
-        static_cast<std::uint32_t>(random.unit() * static_cast<float>(mesh.triangles()));
+        static_cast<std::uint32_t>(random.unit() * static_cast<float>(mesh.boxes.size()));
     Vector3<float> point = mesh.corner(triangle, 0);
     if (place != "on corners") {
         point += random.unit() * (mesh.corner(triangle, 1) - point);
@@ -159,7 +150,7 @@ Vector3<float> pointAt(const GroundMesh& mesh, std::string_view place, Random& r
 
 void askPoints(const TerrainPlan& plan, std::uint64_t seed, std::span<const GroundMethod> methods,
                Measurements& measured) {
-    const GroundMesh mesh = hillsOf(0.3F, seed).mesh;
+    const TriangleGround mesh = hillsOf(0.3F, seed).mesh;
     const float height = mesh.bounds().max().y() + kAbove;
     const ExactGround truth(mesh);
     Random random(seed);
@@ -174,7 +165,7 @@ void askPoints(const TerrainPlan& plan, std::uint64_t seed, std::span<const Grou
         }
         std::vector<std::optional<Standing>> found(plan.points);
         for (const GroundMethod& method : methods) {
-            if (!method.findsPoints) {
+            if (!method.is("finds_points")) {
                 continue;
             }
             method.make(mesh, kUsualCell)(points, found);
@@ -208,14 +199,7 @@ Findings findTerrain(const TerrainPlan& plan, std::uint64_t seed,
     constexpr std::array cellSizes{0.5F, 1.0F, kUsualCell, 4.0F, 8.0F};
     Measurements measured;
     measured.add("plan", {{"spheres_per_frame", plan.spheresPerFrame}, {"seed", seed}});
-    for (const GroundMethod& method : methods) {
-        measured.add("methods", {{"number", &method - methods.data()},
-                                 {"method", method.name},
-                                 {"ours", method.isOurs},
-                                 {"must_rest", method.mustRest},
-                                 {"sinks_by_line", method.sinksByLine},
-                                 {"takes_cells", method.takesCells}});
-    }
+    addMethods(methods, {"must_rest", "sinks_by_line", "takes_cells"}, measured);
     Random random(seed + 1);
     for (int slope = 0; slope <= 80; slope += 10) {
         tell(0.3 * slope / 80, "slopes");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/terrain/ground_mesh.hpp>
+#include <demos/accuracy/terrain/terrain_experiment.hpp>
 
 #include <demos/scenes/random.hpp>
 
@@ -68,49 +68,23 @@ Real heightOf(const Corners& triangle, Real x, Real z) {
 
 }  // namespace
 
-GroundMesh::GroundMesh(const std::function<float(float, float)>& height, float jitter,
-                       std::uint64_t seed) {
-    Random random(seed);
-    for (std::uint32_t k = 0; k <= kQuads; ++k) {
-        for (std::uint32_t i = 0; i <= kQuads; ++i) {
-            float x = static_cast<float>(i) * kEdge - kHalf;
-            float z = static_cast<float>(k) * kEdge - kHalf;
-            if (i > 0 && i < kQuads && k > 0 && k < kQuads) {
-                x += random.between(-jitter, jitter);
-                z += random.between(-jitter, jitter);
-            }
-            vertices.emplace_back(x, height(x, z), z);
-        }
-    }
-    for (std::uint32_t k = 0; k < kQuads; ++k) {
-        for (std::uint32_t i = 0; i < kQuads; ++i) {
-            // Along the diagonal that a heightfield of Bullet's takes.
-            const std::uint32_t a = k * (kQuads + 1) + i;
-            const std::uint32_t b = a + 1;
-            const std::uint32_t c = a + kQuads + 1;
-            indices.insert(indices.end(), {a, c, b, b, c, c + 1});
-        }
-    }
+TriangleGround groundOfHeights(const std::function<float(float, float)>& height, float jitter,
+                               std::uint64_t seed) {
+    const auto isInner = [](std::uint32_t i) { return i > 0 && i < kGroundQuads; };
+    return {kGroundQuads,
+            [&, random = Random(seed)](std::uint32_t i, std::uint32_t k) mutable -> Vector3<float> {
+                float x = static_cast<float>(i) * kGroundEdge - kGroundHalf;
+                float z = static_cast<float>(k) * kGroundEdge - kGroundHalf;
+                if (isInner(i) && isInner(k)) {
+                    x += random.between(-jitter, jitter);
+                    z += random.between(-jitter, jitter);
+                }
+                return {x, height(x, z), z};
+            }};
 }
 
-std::vector<Aabb<float>> GroundMesh::triangleBoxes() const {
-    std::vector<Aabb<float>> boxes(triangles());
-    for (std::size_t i = 0; i < indices.size(); ++i) {
-        boxes[i / 3].extend(vertices[indices[i]]);
-    }
-    return boxes;
-}
-
-Aabb<float> GroundMesh::bounds() const {
-    Aabb<float> bounds;
-    for (const Vector3<float>& vertex : vertices) {
-        bounds.extend(vertex);
-    }
-    return bounds;
-}
-
-ExactGround::ExactGround(const GroundMesh& mesh) : boxes_(mesh.triangleBoxes()) {
-    for (std::uint32_t i = 0; i < mesh.triangles(); ++i) {
+ExactGround::ExactGround(const TriangleGround& mesh) : boxes_(mesh.boxes) {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
         triangles_.push_back({mesh.corner(i, 0).cast<Real>(), mesh.corner(i, 1).cast<Real>(),
                               mesh.corner(i, 2).cast<Real>()});
     }
@@ -118,7 +92,7 @@ ExactGround::ExactGround(const GroundMesh& mesh) : boxes_(mesh.triangleBoxes()) 
 
 std::vector<const Corners*> ExactGround::trianglesBelow(float x, float z, float radius) const {
     std::vector<const Corners*> found;
-    const float reach = radius + GroundMesh::kEdge;
+    const float reach = radius + kGroundEdge;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
         const Aabb<float>& box = boxes_[i];
         if (box.min().x() <= x + reach && box.max().x() >= x - reach &&

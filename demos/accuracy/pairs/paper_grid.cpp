@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/accuracy/baselines/paper_grid.hpp>
+#include <demos/accuracy/pairs/pair_experiments.hpp>
 
 #include <algorithm>
 #include <array>
@@ -30,12 +30,12 @@ CellSpan cellsOf(const BulletBox& box, btScalar inverseCellSize) {
     return {cellOf(box.min, inverseCellSize), cellOf(box.max, inverseCellSize)};
 }
 
-class PaperGrid : public PairSource {
+class PaperGrid {
 public:
     PaperGrid(double cellSize, FiledCells filed)
         : inverseCellSize_(static_cast<btScalar>(1 / cellSize)), filed_(filed) {}
 
-    void step(std::span<const BulletBox> boxes) override {
+    void step(std::span<const BulletBox> boxes) {
         hash(boxes);
         fillBuckets();
         pairs_.clear();
@@ -48,8 +48,8 @@ public:
         pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     }
 
-    void listPairs(std::vector<PairKey>& pairs) const override { pairs = pairs_; }
-    [[nodiscard]] std::optional<std::uint64_t> boxesTested() const override { return tested_; }
+    [[nodiscard]] const std::vector<PairKey>& pairs() const { return pairs_; }
+    [[nodiscard]] std::uint64_t boxesTested() const { return tested_; }
 
 private:
     /// An object in a cell.
@@ -135,14 +135,13 @@ private:
 }  // namespace
 
 PairMethod paperGridMethod(std::string name, double cellSize, FiledCells filed) {
-    const bool isExact = filed == FiledCells::kAll;
-    return {.name = std::move(name),
-            .origin = kOfPaper,
-            .isExact = isExact,
-            .isComplete = isExact,
-            .make = [=](const BroadphaseNeeds& /*needs*/, std::span<const BulletBox> /*boxes*/) {
-                return std::make_unique<PaperGrid>(cellSize, filed);
-            }};
+    return {{std::move(name), filed == FiledCells::kAll ? "paper exact complete" : "paper",
+             [=](const BroadphaseNeeds& /*needs*/, std::span<const BulletBox> /*boxes*/) {
+                 const auto grid = std::make_shared<PaperGrid>(cellSize, filed);
+                 return PairSource{[=](std::span<const BulletBox> boxes) { grid->step(boxes); },
+                                   [=](std::vector<PairKey>& pairs) { pairs = grid->pairs(); },
+                                   [=] { return grid->boxesTested(); }};
+             }}};
 }
 
 double filedCellCount(std::span<const BulletBox> boxes, double cellSize) {
