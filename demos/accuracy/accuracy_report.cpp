@@ -58,7 +58,7 @@ Json listOf(const Range& range, const Make& make) {
 
 Json tableJson(const DataTable& data) {
     const auto column = [](const DataColumn& each) -> Json {
-        return {{"name", each.name}, {"title", each.title}};
+        return {{"name", each.name}, {"title", titleOf(each)}};
     };
     const auto row = [](const std::vector<Value>& cells) { return listOf(cells, valueJson); };
     return {{"columns", listOf(data.columns, column)}, {"rows", listOf(data.rows, row)}};
