@@ -53,27 +53,6 @@ void declare(CLI::App& app, AccuracyOptions& options) {
     app.add_flag("--list", options.list, "say which experiments there are");
 }
 
-Experiments chosenExperiments(const std::vector<std::string>& ids,
-                              std::span<const Experiment> experiments) {
-    const auto isIn = [](const auto& all, std::string_view id) {
-        return std::find(all.begin(), all.end(), id) != all.end();
-    };
-    std::vector<std::string> known;
-    Experiments chosen;
-    for (const Experiment& each : experiments) {
-        known.emplace_back(each.id);
-        if (ids.empty() || isIn(ids, each.id)) {
-            chosen.push_back(&each);
-        }
-    }
-    for (const std::string& id : ids) {
-        if (!isIn(known, id)) {
-            throw InputError(unknownNameSentence("experiment", id, known));
-        }
-    }
-    return chosen;
-}
-
 /// Keeps this thread on the core where it is: the scheduler moves threads, and caches do not move along.
 void pinToThisCore() {
 #if defined(__linux__)
@@ -140,7 +119,8 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
         }
         return kExitOk;
     }
-    const Experiments chosen = chosenExperiments(options.only, experiments);
+    const Experiments chosen = chosenOf("experiment", options.only, experiments,
+                                        [](const Experiment& each) { return each.id; });
     if (!options.folder.empty()) {
         std::error_code error;
         std::filesystem::create_directories(options.folder, error);

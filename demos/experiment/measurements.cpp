@@ -67,31 +67,15 @@ void interval(Context context, int count, Arguments arguments) {
     sqlite3_result_double(context, share.*bound);
 }
 
-void thousands(Context context, int /*count*/, Arguments arguments) {
-    if (!isNull(arguments[0])) {
-        giveText(context, withThousands(countAt(arguments, 0)));
-    }
-}
-
 void number(Context context, int /*count*/, Arguments arguments) {
     giveText(context, isNull(arguments[0]) ? "-" : valueText(numberAt(arguments, 0)));
 }
 
-void fixedText(Context context, int /*count*/, Arguments arguments) {
+/// What textOf(arguments) says; null where the first of them is.
+template <auto textOf>
+void told(Context context, int /*count*/, Arguments arguments) {
     if (!isNull(arguments[0])) {
-        giveText(context, fixed(numberAt(arguments, 0), sqlite3_value_int(arguments[1])));
-    }
-}
-
-void millisecondsText(Context context, int /*count*/, Arguments arguments) {
-    if (!isNull(arguments[0])) {
-        giveText(context, milliseconds(numberAt(arguments, 0)));
-    }
-}
-
-void bytesText(Context context, int /*count*/, Arguments arguments) {
-    if (!isNull(arguments[0])) {
-        giveText(context, byteSize(sqlite3_value_int64(arguments[0])));
+        giveText(context, textOf(arguments));
     }
 }
 
@@ -140,11 +124,12 @@ constexpr Function kFunctions[] = {
     {"interval_low", 3, interval<&ShareInterval::low>},
     {"interval_high", 2, interval<&ShareInterval::high>},
     {"interval_high", 3, interval<&ShareInterval::high>},
-    {"thousands", 1, thousands},
     {"number", 1, number},
-    {"fixed", 2, fixedText},
-    {"ms", 1, millisecondsText},
-    {"bytes", 1, bytesText},
+    {"thousands", 1, told<[](Arguments all) { return withThousands(countAt(all, 0)); }>},
+    {"fixed", 2,
+     told<[](Arguments all) { return fixed(numberAt(all, 0), sqlite3_value_int(all[1])); }>},
+    {"ms", 1, told<[](Arguments all) { return milliseconds(numberAt(all, 0)); }>},
+    {"bytes", 1, told<[](Arguments all) { return byteSize(sqlite3_value_int64(all[0])); }>},
 };
 constexpr Function kAggregates[] = {{"median", 1, stepOfPercentile},
                                     {"percentile", 2, stepOfPercentile}};

@@ -48,27 +48,6 @@ void declareReport(CLI::App& app, ReportOptions& options) {
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
 }
 
-std::vector<const ReportPart*> chosenParts(const std::vector<ReportPart>& parts,
-                                           const std::vector<std::string>& names) {
-    std::vector<std::string> known;
-    for (const ReportPart& part : parts) {
-        known.push_back(part.command.name);
-    }
-    for (const std::string& name : names) {
-        if (std::find(known.begin(), known.end(), name) == known.end()) {
-            throw InputError(unknownNameSentence("part", name, known));
-        }
-    }
-    std::vector<const ReportPart*> chosen;
-    for (const ReportPart& part : parts) {
-        const auto found = std::find(names.begin(), names.end(), part.command.name);
-        if (names.empty() || found != names.end()) {
-            chosen.push_back(&part);
-        }
-    }
-    return chosen;
-}
-
 /// Runs the parts, and joins what they hand in.
 class ReportRun {
 public:
@@ -87,13 +66,100 @@ public:
     }
 
 private:
-    void runPart(std::size_t index);
-    [[nodiscard]] Page pageOfPart(const ReportPart& part, const std::vector<std::string>& options);
-    [[nodiscard]] std::optional<double> secondsFor(std::size_t index) const;
-    [[nodiscard]] double expectedSeconds(const ReportPart& part) const {
-        return options_.isQuick ? part.quickSeconds : part.fullSeconds;
+    /// Of what is left, the part's share of the expected time of all that are to come.
+    [[nodiscard]] std::optional<double> secondsFor(std::size_t index) const {
+        if (!options_.timeLimit) {
+            return std::nullopt;
+        }
+        const auto expected = [this](const ReportPart* part) {
+            return options_.isQuick ? part->quickSeconds : part->fullSeconds;
+        };
+        double toCome = 0;
+        for (std::size_t i = index; i < parts_.size(); ++i) {
+            toCome += expected(parts_[i]);
+        }
+        const double left = *options_.timeLimit - watch_.milliseconds() / 1000;
+        return left * expected(parts_[index]) / toCome;
     }
-    void conclude();
+
+    void runPart(std::size_t index) {
+        const ReportPart& part = *parts_[index];
+        const std::string& name = part.command.name;
+        const std::optional<double> seconds = secondsFor(index);
+        if (seconds && *seconds <= 0) {
+            leftOut_.push_back(name);
+            return;
+        }
+        if (!options_.quiet) {
+            console_.err << "part " << index + 1 << " of " << parts_.size() << ": " << name << '\n';
+        }
+        std::vector<std::string> arguments;
+        if (options_.isQuick) {
+            arguments = part.quickOptions;
+        }
+        arguments.insert(arguments.end(), {"--seed", std::to_string(options_.seed)});
+        if (seconds) {
+            arguments.insert(arguments.end(), {"--time-limit", fixed(std::max(*seconds, 0.1), 1)});
+        }
+        const Stopwatch watch;
+        page_.parts.push_back(pageOfPart(part, arguments));
+        const Page& done = page_.parts.back();
+        const std::string evidence = name + ", " + fixed(watch.milliseconds() / 1000, 0) + " s";
+        if (done.holds) {
+            inShort_.checks.push_back({done.verdict, *done.holds, evidence});
+        } else {
+            notChecked_.push_back(name);
+            inShort_.conclusions.push_back("Not checked: " + done.verdict + " (" + evidence + ")");
+        }
+        console_.out << name << ": " << done.verdict << '\n' << std::flush;
+    }
+
+    // A part that cannot go on has not shown what it was to show.
+    [[nodiscard]] Page pageOfPart(const ReportPart& part, const std::vector<std::string>& options) {
+        std::ostream nowhere(nullptr);
+        Page page{part.command.name, "", "It handed in no page.", false, {}, {}};
+        Console console{nowhere, console_.err, console_.errIsTerminal,
+                        "hashphase " + part.command.name};
+        for (const std::string& option : options) {
+            console.commandLine += " " + option;
+        }
+        console.takePage = [&page](const Page& taken) { page = taken; };
+        page.provenance.commandLine = console.commandLine;
+        CLI::App app;
+        part.command.declareOptions(app);
+        std::vector<std::string> arguments(options.rbegin(),
+                                           options.rend());  // as CLI11 takes them
+        if (options_.quiet) {
+            arguments.insert(arguments.begin(), "--quiet");
+        }
+        try {
+            app.parse(std::move(arguments));
+            if (part.command.run(console) != kExitOk) {
+                page.holds = false;
+            }
+        } catch (const std::exception& error) {
+            page.holds = false;
+            page.verdict = std::string("It did not come to its end: ") + error.what();
+        }
+        return page;
+    }
+
+    void conclude() {
+        const auto broken = std::ranges::count(inShort_.checks, false, &Check::holds);
+        page_.verdict = "Checked " + std::to_string(inShort_.checks.size()) + " of " +
+                        std::to_string(parts_.size()) + (parts_.size() == 1 ? " part" : " parts");
+        if (!inShort_.checks.empty()) {
+            page_.holds = broken == 0;
+            page_.verdict += broken == 0 ? ": all checks hold"
+                                         : ": checks of " + std::to_string(broken) + " are BROKEN";
+        }
+        page_.verdict += namesText("; not checked: ", notChecked_) + leftOutText(leftOut_) + ".";
+        inShort_.heading = "In short";
+        if (options_.isQuick) {
+            inShort_.sentences = {"Measured with --quick: fewer objects, fewer frames."};
+        }
+        page_.sections = {std::move(inShort_)};
+    }
 
     std::vector<const ReportPart*> parts_;
     const ReportOptions& options_;
@@ -105,102 +171,11 @@ private:
     std::vector<std::string> leftOut_;     // for want of time
 };
 
-/// Of what is left, the part's share of the expected time of all that are to come.
-std::optional<double> ReportRun::secondsFor(std::size_t index) const {
-    if (!options_.timeLimit) {
-        return std::nullopt;
-    }
-    double toCome = 0;
-    for (std::size_t i = index; i < parts_.size(); ++i) {
-        toCome += expectedSeconds(*parts_[i]);
-    }
-    const double left = *options_.timeLimit - watch_.milliseconds() / 1000;
-    return left * expectedSeconds(*parts_[index]) / toCome;
-}
-
-void ReportRun::runPart(std::size_t index) {
-    const ReportPart& part = *parts_[index];
-    const std::string& name = part.command.name;
-    const std::optional<double> seconds = secondsFor(index);
-    if (seconds && *seconds <= 0) {
-        leftOut_.push_back(name);
-        return;
-    }
-    if (!options_.quiet) {
-        console_.err << "part " << index + 1 << " of " << parts_.size() << ": " << name << '\n';
-    }
-    std::vector<std::string> arguments;
-    if (options_.isQuick) {
-        arguments = part.quickOptions;
-    }
-    arguments.insert(arguments.end(), {"--seed", std::to_string(options_.seed)});
-    if (seconds) {
-        arguments.insert(arguments.end(), {"--time-limit", fixed(std::max(*seconds, 0.1), 1)});
-    }
-    const Stopwatch watch;
-    page_.parts.push_back(pageOfPart(part, arguments));
-    const Page& done = page_.parts.back();
-    const std::string evidence = name + ", " + fixed(watch.milliseconds() / 1000, 0) + " s";
-    if (done.holds) {
-        inShort_.checks.push_back({done.verdict, *done.holds, evidence});
-    } else {
-        notChecked_.push_back(name);
-        inShort_.conclusions.push_back("Not checked: " + done.verdict + " (" + evidence + ")");
-    }
-    console_.out << name << ": " << done.verdict << '\n' << std::flush;
-}
-
-// A part that cannot go on has not shown what it was to show.
-Page ReportRun::pageOfPart(const ReportPart& part, const std::vector<std::string>& options) {
-    std::ostream nowhere(nullptr);
-    Page page{part.command.name, "", "It handed in no page.", false, {}, {}};
-    Console console{nowhere, console_.err, console_.errIsTerminal,
-                    "hashphase " + part.command.name};
-    for (const std::string& option : options) {
-        console.commandLine += " " + option;
-    }
-    console.takePage = [&page](const Page& taken) { page = taken; };
-    page.provenance.commandLine = console.commandLine;
-    CLI::App app;
-    part.command.declareOptions(app);
-    std::vector<std::string> arguments(options.rbegin(), options.rend());  // as CLI11 takes them
-    if (options_.quiet) {
-        arguments.insert(arguments.begin(), "--quiet");
-    }
-    try {
-        app.parse(std::move(arguments));
-        if (part.command.run(console) != kExitOk) {
-            page.holds = false;
-        }
-    } catch (const std::exception& error) {
-        page.holds = false;
-        page.verdict = std::string("It did not come to its end: ") + error.what();
-    }
-    return page;
-}
-
-void ReportRun::conclude() {
-    const std::vector<Check>& checked = inShort_.checks;
-    const auto broken = std::count_if(checked.begin(), checked.end(),
-                                      [](const Check& check) { return !check.holds; });
-    page_.verdict = "Checked " + std::to_string(checked.size()) + " of " +
-                    std::to_string(parts_.size()) + (parts_.size() == 1 ? " part" : " parts");
-    if (!checked.empty()) {
-        page_.holds = broken == 0;
-        page_.verdict += broken == 0 ? ": all checks hold"
-                                     : ": checks of " + std::to_string(broken) + " are BROKEN";
-    }
-    page_.verdict += namesText("; not checked: ", notChecked_) + leftOutText(leftOut_) + ".";
-    inShort_.heading = "In short";
-    if (options_.isQuick) {
-        inShort_.sentences = {"Measured with --quick: fewer objects, fewer frames."};
-    }
-    page_.sections = {std::move(inShort_)};
-}
-
 int runReport(const std::vector<ReportPart>& parts, const ReportOptions& options,
               Console& console) {
-    std::vector<const ReportPart*> chosen = chosenParts(parts, options.only);
+    std::vector<const ReportPart*> chosen =
+        chosenOf("part", options.only, std::span(parts),
+                 [](const ReportPart& part) { return part.command.name; });
     ResultFile file(options.htmlFile);
     const Page page = ReportRun(std::move(chosen), options, console).run();
     deliverPage(page, file, console);
