@@ -5,7 +5,6 @@
 #include <demos/console/result_file.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
-#include <demos/report/vega_lite.hpp>
 
 #include <array>
 #include <ostream>
@@ -56,24 +55,10 @@ Json listOf(const Range& range, const Make& make) {
     return list;
 }
 
-Json tableJson(const DataTable& data) {
-    const auto column = [](const DataColumn& each) -> Json {
-        return {{"name", each.name}, {"title", titleOf(each)}};
-    };
-    const auto row = [](const std::vector<Value>& cells) { return listOf(cells, valueJson); };
-    return {{"columns", listOf(data.columns, column)}, {"rows", listOf(data.rows, row)}};
-}
-
 Json outcomeJson(const AccuracyReport& report, const Outcome& outcome) {
     const Findings& findings = outcome.findings;
     const auto check = [](const Check& each) -> Json {
         return {{"claim", each.claim}, {"holds", each.holds}, {"evidence", each.evidence}};
-    };
-    const auto chart = [](const Chart& each) -> Json {
-        return {{"name", each.name},
-                {"title", each.title},
-                {"settings", each.settings},
-                {"data", tableJson(each.data)}};
     };
     const auto choice = [](const Choice& each) -> Json {
         return {{"task", each.task},
@@ -95,7 +80,7 @@ Json outcomeJson(const AccuracyReport& report, const Outcome& outcome) {
             {"settings", findings.settings},
             {"checks", listOf(findings.checks, check)},
             {"conclusions", findings.conclusions},
-            {"charts", listOf(findings.charts, chart)},
+            {"charts", listOf(findings.charts, chartJson)},
             {"tables", listOf(findings.tables, tableJson)},
             {"choices", listOf(findings.choices, choice)}};
 }
@@ -212,15 +197,11 @@ void writeReport(const AccuracyReport& report, const std::string& folder) {
     const auto write = [&folder](const std::string& name, const auto& writeTo) {
         ResultFile(folder + "/" + name).write(writeTo);
     };
-    const SeriesLooks looks = seriesLooks(pageOf(report));
     for (const Outcome& outcome : report.outcomes) {
         write(std::string(outcome.experiment->id) + ".json",
               [&](std::ostream& file) { file << textOf(outcomeJson(report, outcome)); });
         for (const Chart& chart : outcome.findings.charts) {
             write(chart.name + ".csv", [&](std::ostream& file) { writeCsv(chart.data, file); });
-            write(chart.name + ".vl.json", [&](std::ostream& file) {
-                file << textOf(vegaLiteSpec(chart, looks, pictureTheme(), ChartTitle::kInside));
-            });
         }
     }
     write("advice.csv",

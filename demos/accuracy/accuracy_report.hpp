@@ -41,9 +41,9 @@ void printReport(const AccuracyReport& report, std::ostream& out);
 /// The verdict, what to choose, experiment by experiment what was found, and where.
 [[nodiscard]] Page pageOf(const AccuracyReport& report);
 
-/// Writes to the folder, which exists, <id>.json of each experiment (schema "hashphase-accuracy"),
-/// <name>.csv and <name>.vl.json (as Vega-Lite draws it) of each chart, and advice.csv. Throws
-/// InputError when a file cannot be written.
+/// Writes to the folder, which exists, <id>.json of each experiment (schema "hashphase-accuracy"), with the
+/// charts that demos/report/draw draws, <name>.csv of each chart, and advice.csv. Throws InputError when a
+/// file cannot be written.
 void writeReport(const AccuracyReport& report, const std::string& folder);
 
 }  // namespace hashphase::demos

@@ -5,7 +5,9 @@
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/effects/effects_report.hpp>
+#include <demos/effects/effects_prices.hpp>
+#include <demos/report/json_values.hpp>
+#include <demos/report/report_text.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
 
@@ -20,6 +22,12 @@
 
 namespace hashphase::demos {
 namespace {
+
+constexpr const char* kIntroduction =
+    "hashphase is a spatial hash for the Bullet physics engine and for games. A scene declares the "
+    "effects that it calls for, and a frame runs just those. This is what each of them costs in "
+    "one scene, and what the scene lacks without it: measured by running the scene with and "
+    "without it, frame by frame in turn.";
 
 struct EffectsOptions {
     std::string scene = "paper";
@@ -83,11 +91,8 @@ void printList(std::ostream& out) {
     }
 }
 
-EffectPrices measure(const EffectsFile& file, const EffectsOptions& options, Console& console,
-                     std::size_t (*allocationCount)()) {
-    PricingSettings settings;
-    settings.frames = file.scene.frames;
-    settings.allocationCount = allocationCount;
+Measurements measure(const EffectsFile& file, PricingSettings settings,
+                     const EffectsOptions& options, Console& console) {
     const Stopwatch watch;
     settings.isTimeUp = [&] {
         return options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit;
@@ -98,6 +103,32 @@ EffectPrices measure(const EffectsFile& file, const EffectsOptions& options, Con
         progress.update(done, what);
     };
     return priceEffects(file, settings);
+}
+
+void printReport(const Findings& findings, const Provenance& provenance, std::ostream& out) {
+    const auto& [caption, prices] = findings.printed.front();
+    out << caption << '\n';
+    printTable(prices, out);
+    for (const std::string& line : sentencesOf(findings.rows.at("below"))) {
+        out << line << '\n';
+    }
+    printProvenance(provenance, out);
+    out << findings.verdict << '\n';
+}
+
+/// Every variant with its times, counters and bytes, and the prices.
+void writeJson(const Findings& findings, const Provenance& provenance, const EffectsFile& file,
+               std::ostream& out) {
+    const auto rows = [&](const char* name) { return rowsJson(findings.rows.at(name)); };
+    Json json{{"schema", "hashphase-effects"},
+              {"schemaVersion", 1},
+              {"provenance", provenanceJson(provenance)},
+              {"scene", Json::parse(effectsFileText(file))}};
+    json.update(rows("end").front());
+    for (const char* name : {"checks", "prices", "variants"}) {
+        json[name] = rows(name);
+    }
+    out << textOf(json);
 }
 
 int runEffects(const EffectsOptions& options, Console& console, std::size_t (*allocationCount)()) {
@@ -126,14 +157,19 @@ int runEffects(const EffectsOptions& options, Console& console, std::size_t (*al
     ResultFile html(options.htmlFile);
 
     const Provenance provenance = gatherProvenance(console.commandLine);
-    EffectPrices prices = measure(file, options, console, allocationCount);
-    prices.name = name;
-    prices.provenance = provenance;
-    printReport(prices, console.out);
-    json.write([&prices](std::ostream& out) { writeJson(prices, out); });
-    csv.write([&prices](std::ostream& out) { writeCsv(prices, out); });
-    deliverPage(pageOf(prices), html, console);
-    return allHold(prices) ? kExitOk : kExitCheckFailed;
+    PricingSettings settings;
+    settings.scene = name;
+    settings.frames = file.scene.frames;
+    settings.allocationCount = allocationCount;
+    Measurements measured = measure(file, settings, options, console);
+    const Findings findings = effectsFindings(measured);
+    printReport(findings, provenance, console.out);
+    json.write([&](std::ostream& out) { writeJson(findings, provenance, file, out); });
+    csv.write([&](std::ostream& out) { writeCsv(findings.rows.at("csv"), out); });
+    deliverPage({"What each effect costs", kIntroduction, findings.verdict + ".", findings.holds,
+                 findings.sections, provenance},
+                html, console);
+    return findings.holds.value_or(true) ? kExitOk : kExitCheckFailed;
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/effects/effects_prices.hpp>
 
-#include <demos/console/format.hpp>
 #include <demos/report/frame_clock.hpp>
 
 #include <algorithm>
@@ -10,27 +9,26 @@
 namespace hashphase::demos {
 namespace {
 
+constexpr std::string_view kEffectsDeclaration =
+#include <demos/effects/effects.sql>
+    ;
+
 constexpr std::uint32_t kProbedFrames = 20;  // one in so many
 
-/// What of an effect's price is taken from what.
-struct Comparison {
-    EffectSet with;
-    EffectSet without;
+/// What an effect's price is taken from.
+struct Compared {
+    EffectSet alone, aloneWithout, allWithout;
 };
 
-Comparison aloneOf(EffectSet declared, Effect effect) {
+Compared comparedFor(EffectSet declared, Effect effect) {
     const EffectSet base = needsOf(effect) | (declared & EffectSet{Effect::motion});
-    return {base | EffectSet{effect}, base - EffectSet{effect}};
-}
-
-Comparison inAllOf(EffectSet declared, Effect effect) {
     EffectSet without = declared;
     for (const Effect other : kAllEffects) {
         if (other == effect || needsOf(other).contains(effect)) {
             without.erase(other);
         }
     }
-    return {declared, without};
+    return {base | EffectSet{effect}, base - EffectSet{effect}, without};
 }
 
 /// All that has to run, each once: the whole scene first, then nothing.
@@ -40,41 +38,58 @@ std::vector<EffectSet> setsToRun(EffectSet declared) {
         if (!declared.contains(effect)) {
             continue;
         }
-        for (const auto& [with, without] : {aloneOf(declared, effect), inAllOf(declared, effect)}) {
-            for (const EffectSet set : {with, without}) {
-                if (std::ranges::find(sets, set) == sets.end()) {
-                    sets.push_back(set);
-                }
+        const auto& [alone, aloneWithout, allWithout] = comparedFor(declared, effect);
+        for (const EffectSet set : {alone, aloneWithout, declared, allWithout}) {
+            if (std::ranges::find(sets, set) == sets.end()) {
+                sets.push_back(set);
             }
         }
     }
     return sets;
 }
 
+std::string jsonOf(EffectSet effects) {
+    std::string text = "[";
+    for (const Effect effect : kAllEffects) {
+        if (effects.contains(effect)) {
+            text += (text.size() > 1 ? ",\"" : "\"") + std::string(nameOf(effect)) + '"';
+        }
+    }
+    return text + "]";
+}
+
 class Pricing {
 public:
     Pricing(const EffectsFile& file, const PricingSettings& settings)
-        : settings_(settings), probe_(file.scene) {
-        prices_.file = file;
-        for (const EffectSet effects : setsToRun(file.effects.set())) {
+        : file_(file),
+          settings_(settings),
+          sets_(setsToRun(file.effects.set())),
+          costs_(sets_.size()),
+          probe_(file.scene) {
+        for (const EffectSet effects : sets_) {
             worlds_.push_back(
                 std::make_unique<EffectsWorld>(file.scene, onlyThese(file.effects, effects)));
-            prices_.variants.emplace_back().effects = effects;
+            measured_.add("variants", {{"effects", namesOf(effects)}, {"list", jsonOf(effects)}});
         }
+        measured_.create("results", {"effect", "differs"});
     }
 
-    EffectPrices run() {
+    Measurements run() {
         const std::uint32_t all = settings_.warmUpFrames + settings_.frames;
-        for (std::uint32_t frame = 0; frame < all; ++frame) {
-            if (settings_.isTimeUp() && prices_.frames > 0) {
-                prices_.timeLimitHit = true;
-                break;
+        bool isLimitHit = false;
+        for (std::uint32_t frame = 0; frame < all && !isLimitHit; ++frame) {
+            isLimitHit = frames_ > 0 && settings_.isTimeUp();
+            if (!isLimitHit) {
+                runFrame(frame);
             }
-            runFrame(frame);
         }
-        finish();
-        addChecks();
-        return std::move(prices_);
+        addPrices();
+        addNumbers();
+        measured_.add("run", {{"scene", settings_.scene},
+                              {"objects", file_.scene.objects},
+                              {"frames", frames_},
+                              {"limit_hit", isLimitHit}});
+        return std::move(measured_);
     }
 
 private:
@@ -83,7 +98,7 @@ private:
         const std::size_t count = worlds_.size();
         for (std::size_t turn = 0; turn < count; ++turn) {
             const std::size_t i = (turn + frame) % count;
-            settings_.tellProgress(frame * count + turn, namesOf(prices_.variants[i].effects));
+            settings_.tellProgress(frame * count + turn, namesOf(sets_[i]));
             EffectsWorld& world = *worlds_[i];
             world.beginFrame(frame);
             const std::size_t allocations = allocationCount();
@@ -96,10 +111,10 @@ private:
         }
         if (isMeasured) {
             compareResults();
-            if (prices_.frames % kProbedFrames == 0) {
+            if (frames_ % kProbedFrames == 0) {
                 probe();
             }
-            ++prices_.frames;
+            ++frames_;
         }
     }
 
@@ -108,35 +123,42 @@ private:
     }
 
     void note(std::size_t i, double milliseconds, std::size_t allocations) {
-        PricedVariant& variant = prices_.variants[i];
         const Simulation<float>& simulation = worlds_[i]->simulation();
-        variant.frameMs.push_back(milliseconds);
-        variant.cost += simulation.cost();
+        costs_[i] += simulation.cost();
+        Datum allocated, visible, pairs;
         if (settings_.allocationCount != nullptr) {
-            variant.allocations =
-                variant.allocations.value_or(0) + static_cast<double>(allocations);
+            allocated = allocations;
         }
-        if (variant.effects.contains(Effect::culling)) {
-            variant.visible += static_cast<double>(simulation.observers().culler().count());
+        if (sets_[i].contains(Effect::culling)) {
+            visible = simulation.observers().culler().count();
         }
-        if (variant.effects.contains(Effect::pairs)) {
-            variant.present += static_cast<double>(simulation.pairCount());
+        if (sets_[i].contains(Effect::pairs)) {
+            pairs = simulation.pairCount();
         }
+        measured_.add("frames", {{"variant", i + 1},
+                                 {"frame", frames_},
+                                 {"ms", milliseconds},
+                                 {"allocations", allocated},
+                                 {"visible", visible},
+                                 {"pairs", pairs}});
     }
 
     /// Of those of which bodies go the same ways, those who look must find the same.
     void compareResults() {
+        const EffectsWorld& whole = *worlds_[0];
         for (std::size_t i = 0; i < worlds_.size(); ++i) {
-            const EffectSet effects = prices_.variants[i].effects;
-            if ((effects & kMovingEffects) != (prices_.whole().effects & kMovingEffects)) {
+            const EffectSet effects = sets_[i];
+            const EffectsWorld& world = *worlds_[i];
+            if ((effects & kMovingEffects) != (sets_[0] & kMovingEffects)) {
                 continue;
             }
-            differences_ += worlds_[i]->placesResult() != worlds_[0]->placesResult() ? 1 : 0;
+            measured_.add("results", {{"effect", Datum()},
+                                      {"differs", world.placesResult() != whole.placesResult()}});
             for (const Effect effect : kAllEffects) {
                 if (effects.contains(effect) && !kMovingEffects.contains(effect)) {
-                    ++comparisons_;
-                    differences_ +=
-                        worlds_[i]->resultOf(effect) != worlds_[0]->resultOf(effect) ? 1 : 0;
+                    measured_.add("results",
+                                  {{"effect", nameOf(effect)},
+                                   {"differs", world.resultOf(effect) != whole.resultOf(effect)}});
                 }
             }
         }
@@ -144,77 +166,57 @@ private:
 
     void probe() {
         for (std::size_t i = 0; i < worlds_.size(); ++i) {
-            PricedVariant& variant = prices_.variants[i];
-            variant.interpenetrating += static_cast<double>(probe_.interpenetrating(*worlds_[i]));
-            variant.offGround += static_cast<double>(probe_.offGround(*worlds_[i]));
+            measured_.add("probes", {{"variant", i + 1},
+                                     {"interpenetrating", probe_.interpenetrating(*worlds_[i])},
+                                     {"off_ground", probe_.offGround(*worlds_[i])}});
         }
-        ++probes_;
     }
 
-    void finish() {
-        const auto frames = static_cast<double>(std::max<std::size_t>(prices_.frames, 1));
-        for (std::size_t i = 0; i < worlds_.size(); ++i) {
-            PricedVariant& variant = prices_.variants[i];
-            variant.footprint = worlds_[i]->simulation().footprint();
-            variant.visible /= frames;
-            variant.present /= frames;
-            variant.interpenetrating /= std::max(probes_, 1);
-            variant.offGround /= std::max(probes_, 1);
-            if (variant.allocations) {
-                *variant.allocations /= frames;
+    void addPrices() {
+        const EffectSet declared = file_.effects.set();
+        const auto variantOf = [&](EffectSet effects) {
+            return std::ranges::find(sets_, effects) - sets_.begin() + 1;
+        };
+        for (const Effect effect : kAllEffects) {
+            if (declared.contains(effect)) {
+                const auto& [alone, aloneWithout, allWithout] = comparedFor(declared, effect);
+                measured_.add("compared", {{"effect", nameOf(effect)},
+                                           {"alone", variantOf(alone)},
+                                           {"alone_without", variantOf(aloneWithout)},
+                                           {"all_without", variantOf(allWithout)}});
             }
         }
     }
 
-    void addChecks() {
-        std::size_t zeros = 0;
-        std::string strays;
-        for (const PricedVariant& variant : prices_.variants) {
-            const auto look = [&](const auto& items, const auto& numbers, auto first) {
-                for (std::size_t i = 0; i < items.size(); ++i) {
-                    const SceneItem& item = items[i];
-                    if (!item.owners.isEmpty() && !variant.effects.containsAny(item.owners)) {
-                        ++zeros;
-                        strays += numbers[static_cast<decltype(first)>(i)] == 0
-                                      ? ""
-                                      : " " + std::string(item.name) + " with " +
-                                            namesOf(variant.effects) + ";";
-                    }
+    void addNumbers() {
+        for (std::size_t i = 0; i < sets_.size(); ++i) {
+            const auto add = [&](const char* kind, const auto& items, const auto& numbers,
+                                 auto first) {
+                for (std::size_t item = 0; item < items.size(); ++item) {
+                    const auto& [name, owners, description] = items[item];
+                    measured_.add(
+                        "numbers",
+                        {{"variant", i + 1},
+                         {"kind", kind},
+                         {"name", name},
+                         {"number", numbers[static_cast<decltype(first)>(item)]},
+                         {"is_declared", owners.isEmpty() || sets_[i].containsAny(owners)}});
                 }
             };
-            look(sceneCounters(), variant.cost, SceneCounter{});
-            look(sceneTables(), variant.footprint, SceneTable{});
+            add("counter", sceneCounters(), costs_[i], SceneCounter{});
+            add("table", sceneTables(), worlds_[i]->simulation().footprint(), SceneTable{});
         }
-        prices_.checks = {{"What is not declared does nothing and takes no memory", strays.empty(),
-                           strays.empty() ? withThousands(zeros) +
-                                                " counters and tables of undeclared effects are 0"
-                                          : "not 0:" + strays},
-                          {"What is declared finds the same, to the bit, whatever else is declared",
-                           differences_ == 0,
-                           withThousands(differences_) + " of " + withThousands(comparisons_) +
-                               " results differ"}};
     }
 
+    const EffectsFile& file_;
     const PricingSettings& settings_;
+    std::vector<EffectSet> sets_;
+    std::vector<std::unique_ptr<EffectsWorld>> worlds_;  // of each
+    std::vector<SceneCost> costs_;                       // the sums of all measured frames
     EffectsProbe probe_;
-    EffectPrices prices_;
-    std::vector<std::unique_ptr<EffectsWorld>> worlds_;
-    std::size_t comparisons_ = 0;
-    std::size_t differences_ = 0;
-    int probes_ = 0;
+    std::size_t frames_ = 0;  // measured
+    Measurements measured_;
 };
-
-Price priceOf(const EffectPrices& prices, const Comparison& compared) {
-    const PricedVariant& with = prices.variant(compared.with);
-    const PricedVariant& without = prices.variant(compared.without);
-    std::vector<double> differences = with.frameMs;
-    for (std::size_t i = 0; i < differences.size(); ++i) {
-        differences[i] -= without.frameMs[i];
-    }
-    return {spreadOf(std::move(differences)),
-            static_cast<std::int64_t>(totalBytes(with.footprint)) -
-                static_cast<std::int64_t>(totalBytes(without.footprint))};
-}
 
 }  // namespace
 
@@ -235,22 +237,12 @@ SceneEffects onlyThese(const SceneEffects& effects, EffectSet these) {
     return some;
 }
 
-const PricedVariant& EffectPrices::variant(EffectSet effects) const {
-    return *std::ranges::find(variants, effects, &PricedVariant::effects);
+Measurements priceEffects(const EffectsFile& file, const PricingSettings& settings) {
+    return Pricing(file, settings).run();
 }
 
-EffectPrices priceEffects(const EffectsFile& file, const PricingSettings& settings) {
-    EffectPrices prices = Pricing(file, settings).run();
-    const EffectSet declared = file.effects.set();
-    for (const Effect effect : kAllEffects) {
-        if (declared.contains(effect)) {
-            const Comparison inAll = inAllOf(declared, effect);
-            prices.prices.push_back({effect, priceOf(prices, aloneOf(declared, effect)),
-                                     priceOf(prices, inAll), workOf(prices, effect),
-                                     lossOf(prices, effect, inAll.without)});
-        }
-    }
-    return prices;
+Findings effectsFindings(Measurements& measured) {
+    return findingsOf(kEffectsDeclaration, measured);
 }
 
 }  // namespace hashphase::demos

@@ -19,13 +19,6 @@ double numberAt(const std::vector<Value>& row, std::size_t column) {
     return number != nullptr ? *number : 0;
 }
 
-ChartMark markNamed(const std::string& name) {
-    return name == "point"  ? ChartMark::kPoint
-           : name == "bar"  ? ChartMark::kBar
-           : name == "cell" ? ChartMark::kCell
-                            : ChartMark::kLine;
-}
-
 Grade gradeNamed(const std::string& name) {
     return name == "good"   ? Grade::kGood
            : name == "fair" ? Grade::kFair
@@ -45,16 +38,6 @@ void addGraded(const std::vector<Value>& cell, GradedTable& graded) {
     if (graded.rows.size() == 1) {
         graded.header.push_back(textAt(cell, 2));
     }
-}
-
-// "time log0"
-Axis axisOf(const std::string& words) {
-    const std::size_t blank = std::min(words.find(' '), words.size());
-    const std::string scale = words.substr(std::min(blank + 1, words.size()));
-    return {words.substr(0, blank), scale == "log"     ? AxisScale::kLog
-                                    : scale == "log0"  ? AxisScale::kLogAndZero
-                                    : scale == "names" ? AxisScale::kNames
-                                                       : AxisScale::kLinear};
 }
 
 /// Takes the comments in front of the next statement, and returns the JSON that one of them holds; null
@@ -77,6 +60,22 @@ Json takeHeading(std::string_view& sql) {
             return heading;
         }
         sql.remove_prefix(std::min(end, sql.size()));
+    }
+}
+
+/// Throws for a mark, a column or a scale that there is not.
+void refuseWhatCannotBeDrawn(const Chart& chart, const std::string& key, const std::string& words) {
+    constexpr std::array<std::string_view, 4> kMarks{"line", "point", "bar", "cell"};
+    constexpr std::array<std::string_view, 4> kScales{"linear", "log", "log0", "names"};
+    const std::size_t blank = std::min(words.find(' '), words.size());
+    const bool isMark = key == "mark";
+    if (!isMark) {
+        static_cast<void>(chart.data.columnOf(words.substr(0, blank)));  // throws
+    }
+    const auto& known = isMark ? kMarks : kScales;
+    const std::string word = isMark ? words : words.substr(std::min(blank + 1, words.size()));
+    if (!word.empty() && std::ranges::find(known, word) == known.end()) {
+        throw std::logic_error("Nothing is drawn as '" + word + "'.");
     }
 }
 
@@ -166,6 +165,9 @@ private:
     }
 
     void showAs(const Json& heading, DataTable found, const Record& parameters) {
+        if (heading.contains("spread")) {
+            found = spread(found);
+        }
         nameColumns(found, parameters);
         if (heading.contains("section")) {
             showInSection(heading, std::move(found), parameters);
@@ -237,27 +239,21 @@ private:
     }
 
     [[nodiscard]] Chart chartOf(const Json& heading, DataTable data, const Record& parameters) {
-        const auto word = [&](const char* key) { return heading.value(key, std::string()); };
         Chart chart;
-        chart.name = filled(word("chart"), parameters);
-        chart.title = filled(word("title"), parameters);
-        chart.settings = filled(word("settings"), parameters);
-        chart.mark = markNamed(word("mark"));
+        chart.name = filled(heading["chart"], parameters);
+        chart.title = filled(heading.value("title", ""), parameters);
+        chart.settings = filled(heading.value("settings", ""), parameters);
         chart.data = std::move(data);
-        chart.x = axisOf(word("x"));
-        chart.y = axisOf(word("y"));
-        chart.series = word("series");
-        chart.low = word("low");
-        chart.high = word("high");
-        chart.label = word("label");
-        chart.shade = axisOf(word("shade"));
-        chart.theory = word("theory");
-        chart.showFront = heading.value("front", false);
-        for (const std::string& column :
-             {chart.x.column, chart.y.column, chart.series, chart.low, chart.high, chart.label,
-              chart.shade.column, chart.theory}) {
-            if (!column.empty()) {
-                static_cast<void>(chart.data.columnOf(column));  // throws where there is none
+        for (const char* key :
+             {"mark", "x", "y", "series", "low", "high", "label", "shade", "theory", "front"}) {
+            if (heading.contains(key)) {
+                const Json& value = heading[key];
+                chart.drawn[key] = value.is_string() ? value.get<std::string>() : value.dump();
+            }
+        }
+        for (const auto& [key, words] : chart.drawn) {
+            if (key != "front") {
+                refuseWhatCannotBeDrawn(chart, key, words);
             }
         }
         return chart;

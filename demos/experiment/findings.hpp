@@ -12,10 +12,24 @@
 //   {"choices": "what"}             task, method, milliseconds, error, result, ours
 //   {"table": "what"}               a table, of which a column "name: title" is headed by its title
 //   {"rows": "what"}                a table for the program itself, by that name
-//   {"chart": "P4-lost", "title": .., "settings": .., "mark": "bar", "x": "setting names", "y": "lost log",
-//    "series": .., "low": .., "high": .., "label": .., "shade": "a column", "theory": .., "front": true}
-//                                   a chart (chart.hpp): marks line, point, bar, cell; scales linear, log,
-//                                   log0, names
+//   {"chart": "P4-lost", "title": .., "settings": .., "mark": "bar", "x": "setting names", "y": "lost log"}
+//                                   a chart (charts.js). Marks:
+//                                     line    a line with points a series, in the order of the rows
+//                                     point   points
+//                                     bar     bars side by side; x are names
+//                                     cell    a heat map: x and y are names; numbers among them grow upwards
+//                                   An axis is a column, of whose title it has its own, and a scale:
+//                                     linear  where none is named
+//                                     log     every number above 0
+//                                     log0    as log, with 0 apart at the lower end
+//                                     names   texts, in the order of the rows
+//     "series": "method"              the column that tells lines, points or bars apart. A method's colour is the
+//                                     same in all charts of a page; "method, variant" has that of the method
+//     "low": "p5", "high": "p95"      the columns of an error bar around y
+//     "label": "step"                 a column of texts that name single points
+//     "shade": "ns log"               an axis: the colour of cells
+//     "theory": "limit"               a column with what theory says for this x: a dashed line
+//     "front": true                   a line through the points that no other beats in both x and y
 //
 //   {"verdict": "of all"}           a sentence, and whether all that is checked holds: 1, 0, or null where nothing
 //                                   was compared
@@ -29,6 +43,9 @@
 //                                   a row for each cell: what heads its row, twice; what heads its column; its
 //                                   text; its grade, "good", "fair", "poor" or null
 //
+// A table or rows of "spread": true has columns by name: the last two columns of its SELECT are the name of a
+// column and what stands in it; see spread() in data_table.hpp.
+//
 // Beside all these, "each" holds a SELECT for whose rows the statement is shown in turn, with their columns as
 // parameters ":name"; statements in a row with the same "each" are shown together for each of its rows, but
 // for those whose "when" is "0". In names, titles and settings of charts, in captions, headings, titles of
@@ -36,8 +53,6 @@
 // these parameters.
 
 #include <demos/experiment/measurements.hpp>
-#include <demos/report/chart.hpp>
-#include <demos/report/check.hpp>
 #include <demos/report/page.hpp>
 
 #include <functional>

@@ -11,7 +11,7 @@
 
 #include <demos/replay/replay_track.hpp>
 #include <demos/report/json_values.hpp>
-#include <demos/report/page_tab.hpp>
+#include <demos/report/page.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/format.hpp>
 #include <demos/replay/replay_recording.hpp>
-#include <demos/report/html.hpp>
 #include <demos/report/page.hpp>
 
 #include <algorithm>

@@ -16,6 +16,7 @@ const code = [
     join(packages, "vega/build/vega.min.js"),
     join(packages, "vega-lite/build/vega-lite.min.js"),
     join(packages, "vega-embed/build/vega-embed.min.js"),
+    join(here, "charts.js"),
     join(here, "page.js"),
 ]
     .map((path) => readFileSync(path, "utf8"))

@@ -8,7 +8,8 @@
 namespace hashphase::demos {
 
 struct ChartScripts {
-    std::string_view code;     // Vega, Vega-Lite, vega-embed and page.js; empty: built without
+    std::string_view
+        code;  // Vega, Vega-Lite, vega-embed, charts.js and page.js; empty: built without
     std::string_view hash;     // of the code, as a content-security policy names it
     std::string_view whyNone;  // a sentence, where there is no code
 };

@@ -86,6 +86,23 @@ DataTable withoutEmptyColumns(const DataTable& table) {
     return kept;
 }
 
+DataTable spread(const DataTable& cells) {
+    const auto keys = static_cast<std::ptrdiff_t>(cells.columns.size()) - 2;
+    DataTable table;
+    table.columns.assign(cells.columns.begin(), cells.columns.begin() + keys);
+    for (const std::vector<Value>& cell : cells.rows) {
+        const auto endOfKeys = cell.begin() + keys;
+        if (table.rows.empty() || !std::equal(cell.begin(), endOfKeys, table.rows.back().begin())) {
+            table.add({cell.begin(), endOfKeys});
+        }
+        if (table.rows.size() == 1) {
+            table.columns.push_back({valueText(*endOfKeys)});
+        }
+        table.rows.back().push_back(cell.back());
+    }
+    return table;
+}
+
 void printTable(const DataTable& table, std::ostream& out, bool isOfWords) {
     std::vector<std::vector<std::string>> lines(table.rows.size() + 1);  // the header first
     std::vector<std::size_t> widths;

@@ -40,6 +40,10 @@ struct DataTable {
 /// Without the columns that have nothing in any row.
 [[nodiscard]] DataTable withoutEmptyColumns(const DataTable& table);
 
+/// Rows that are alike but for their last two cells, which follow each other, as one: of these cells the first
+/// names a column, in the order of the first row, and the second is what stands in it.
+[[nodiscard]] DataTable spread(const DataTable& cells);
+
 /// As text, a rule under the header, no blanks at line ends. The first column is aligned to the left, the others
 /// to the right, as numbers are, or as words are.
 void printTable(const DataTable& table, std::ostream& out, bool isOfWords = false);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/report/json_values.hpp>
 
+#include <demos/report/page.hpp>
+
 #include <cmath>
 
 namespace hashphase::demos {
@@ -53,11 +55,36 @@ Json rowsJson(const DataTable& table) {
     return rows;
 }
 
-Json spreadJson(const std::optional<Spread>& spread) {
-    if (!spread) {
-        return nullptr;
+Json tableJson(const DataTable& table) {
+    Json columns = Json::array();
+    for (const DataColumn& column : table.columns) {
+        columns.push_back({{"name", column.name}, {"title", titleOf(column)}});
     }
-    return {{"median", spread->median}, {"p5", spread->low}, {"p95", spread->high}};
+    Json rows = Json::array();
+    for (const std::vector<Value>& values : table.rows) {
+        Json& row = rows.emplace_back(Json::array());
+        for (const Value& value : values) {
+            row.push_back(valueJson(value));
+        }
+    }
+    return {{"columns", std::move(columns)}, {"rows", std::move(rows)}};
+}
+
+Json chartJson(const Chart& chart) {
+    Json json{{"name", chart.name}, {"title", chart.title}, {"settings", chart.settings}};
+    for (const auto& [key, words] : chart.drawn) {
+        json[key] = words;
+    }
+    json["data"] = tableJson(chart.data);
+    return json;
+}
+
+std::string jsonInScript(const Json& json) {
+    std::string text;
+    for (const char letter : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+        text += letter == '<' ? std::string("\\u003c") : std::string(1, letter);
+    }
+    return text;
 }
 
 Json provenanceJson(const Provenance& provenance) {

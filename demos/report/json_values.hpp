@@ -5,7 +5,6 @@
 
 #include <demos/report/data_table.hpp>
 #include <demos/report/provenance.hpp>
-#include <demos/report/statistics.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -15,6 +14,7 @@
 namespace hashphase::demos {
 
 using Json = nlohmann::ordered_json;
+struct Chart;
 
 template <class Value>
 [[nodiscard]] Json orNull(const std::optional<Value>& value) {
@@ -26,11 +26,19 @@ template <class Value>
 [[nodiscard]] std::string textOf(const Json& json);
 
 [[nodiscard]] Json valueJson(const Value& value);
-[[nodiscard]] Json spreadJson(const std::optional<Spread>& spread);
 
 /// The rows as an array of objects. A column "a.b" is the member `b` of a member `a`, which is null where
 /// all its members are; one "a?" is a truth, and one "a{}" JSON as text.
 [[nodiscard]] Json rowsJson(const DataTable& table);
+
+/// {"columns": [{"name": .., "title": ..}], "rows": [[..]]}
+[[nodiscard]] Json tableJson(const DataTable& table);
+
+/// All of the chart, as charts.js draws it.
+[[nodiscard]] Json chartJson(const Chart& chart);
+
+/// JSON for within a <script>: nothing in it can end the script.
+[[nodiscard]] std::string jsonInScript(const Json& json);
 
 [[nodiscard]] Json provenanceJson(const Provenance& provenance);
 

@@ -11,11 +11,13 @@
         defaultStyle: false,
         tooltip: { disableDefaultStyle: true, theme: "page" },
     };
-    for (const figure of document.querySelectorAll("figure.chart")) {
+    const figures = [...document.querySelectorAll("figure.chart")];
+    const charts = figures.map((figure) => JSON.parse(figure.querySelector("script").textContent));
+    const looks = looksOf(charts);
+    for (const [i, figure] of figures.entries()) {
         const drawing = figure.querySelector(".drawing");
         try {
-            const chart = JSON.parse(figure.querySelector("script").textContent);
-            await vegaEmbed(drawing, chart, options);
+            await vegaEmbed(drawing, chartSpec(charts[i], looks), options);
             figure.dataset.drawn = "yes";
         } catch (error) {
             drawing.textContent = `This chart could not be drawn: ${error.message}`;

@@ -9,14 +9,6 @@
 
 namespace hashphase::demos {
 
-std::string spreadText(const std::optional<Spread>& spread) {
-    if (!spread) {
-        return "-";
-    }
-    return milliseconds(spread->median) + " (" + milliseconds(spread->low) + "-" +
-           milliseconds(spread->high) + ")";
-}
-
 std::string ratioText(const std::optional<double>& ratio) {
     return ratio ? fixed(*ratio, *ratio < 10 ? 2 : 1) + "x" : "-";
 }
@@ -45,16 +37,34 @@ std::string boxText(const Aabb<float>& box) {
     return text.str();
 }
 
-std::string flagsText(const Provenance& provenance) {
-    if (provenance.compilerFlags.empty()) {
-        return "unknown";
+DataTable provenanceTable(const Provenance& provenance) {
+    std::string flags = provenance.compilerFlags.empty() ? "unknown" : provenance.compilerFlags;
+    if (!provenance.compilerFlags.empty() && !provenance.programFlags.empty()) {
+        flags +=
+            "; what hashphase is compared with, but Bullet's own library, and what times it: "
+            "also " +
+            provenance.programFlags;
     }
-    return provenance.compilerFlags +
-           (provenance.programFlags.empty()
-                ? ""
-                : "; what hashphase is compared with, but Bullet's own library, and what times it: "
-                  "also " +
-                      provenance.programFlags);
+    DataTable table{
+        {{"what"}, {"value"}},
+        {{"hashphase", provenance.hashphaseVersion},
+         {"Bullet", provenance.bulletVersion + ", " + provenance.precision + " precision"},
+         {"compiler", provenance.compiler},
+         {"its flags", flags},
+         {"build",
+          provenance.buildType +
+              (provenance.isForMeasuring ? ", for measuring" : ", for tests: times mean little")},
+         {"assertions", provenance.hasAssertions ? "on" : "off"},
+         {"processor", provenance.cpu},
+         {"instructions that hashphase uses", provenance.instructionSet},
+         {"cores", std::to_string(provenance.cores)}}};
+    if (provenance.loadAverage) {
+        const auto& [one, five, fifteen] = *provenance.loadAverage;
+        table.add({"load over 1, 5, 15 minutes before",
+                   fixed(one, 2) + ", " + fixed(five, 2) + ", " + fixed(fifteen, 2)});
+    }
+    table.add({"command", provenance.commandLine});
+    return table;
 }
 
 std::string cautionOf(const Provenance& provenance) {

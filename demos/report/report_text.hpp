@@ -3,8 +3,8 @@
 
 // What all reports for people have in common.
 
+#include <demos/report/data_table.hpp>
 #include <demos/report/provenance.hpp>
-#include <demos/report/statistics.hpp>
 
 #include <broadphase/aabb.hpp>
 
@@ -14,9 +14,6 @@
 #include <vector>
 
 namespace hashphase::demos {
-
-/// "4.36 (4.28-4.62)": median and percentiles of milliseconds; "-" for none.
-[[nodiscard]] std::string spreadText(const std::optional<Spread>& spread);
 
 /// "3.14x", "16.4x"; "-" for none.
 [[nodiscard]] std::string ratioText(const std::optional<double>& ratio);
@@ -32,8 +29,8 @@ namespace hashphase::demos {
 /// The same, "; left out for want of time: P9, P10".
 [[nodiscard]] std::string leftOutText(const std::vector<std::string>& names);
 
-/// The compiler's flags, and which others were in use for what the grid is compared with.
-[[nodiscard]] std::string flagsText(const Provenance& provenance);
+/// All of it, a row each.
+[[nodiscard]] DataTable provenanceTable(const Provenance& provenance);
 
 /// A sentence that begins "Times mean little"; empty for a build that is meant for measuring.
 [[nodiscard]] std::string cautionOf(const Provenance& provenance);

@@ -14,9 +14,4 @@ double percentile(const std::vector<double>& sorted, double share) {
     return std::lerp(sorted[below], sorted[above], rank - static_cast<double>(below));
 }
 
-Spread spreadOf(std::vector<double> series) {
-    std::sort(series.begin(), series.end());
-    return {percentile(series, 0.5), percentile(series, 0.05), percentile(series, 0.95)};
-}
-
 }  // namespace hashphase::demos

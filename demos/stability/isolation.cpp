@@ -37,7 +37,7 @@ File temporaryFile() {
     return file;
 }
 
-std::string textOf(std::FILE* file, std::size_t most) {
+std::string textIn(std::FILE* file, std::size_t most) {
     std::string text(most, '\0');
     text.resize(std::fread(text.data(), 1, most, file));
     return text;
@@ -65,7 +65,7 @@ CaseOutcome readOutcome(std::FILE* file) {
     if (std::fread(&numbers, sizeof numbers, 1, file) != 1) {
         return outcomeOf(OutcomeKind::crashes, "It ended without an answer.");
     }
-    outcome.note = textOf(file, 4000);
+    outcome.note = textIn(file, 4000);
     return outcome;
 }
 
@@ -116,7 +116,7 @@ bool waitFor(pid_t child, double wallSeconds, const std::function<void()>& while
 
 CaseOutcome crash(const std::string& how, std::FILE* said) {
     std::rewind(said);
-    const std::string words = textOf(said, 600);
+    const std::string words = textIn(said, 600);
     return outcomeOf(OutcomeKind::crashes, words.empty() ? how : how + " It said: " + words);
 }
 

@@ -1,13 +1,56 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/stability/stability_command.hpp>
 
+#include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
-#include <demos/stability/stability.hpp>
+#include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
+#include <demos/experiment/findings.hpp>
+#include <demos/report/json_values.hpp>
+#include <demos/report/report_text.hpp>
+#include <demos/report/stopwatch.hpp>
+#include <demos/stability/bullet_subject.hpp>
+#include <demos/stability/isolation.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <array>
+#include <ostream>
+
 namespace hashphase::demos {
 namespace {
+
+constexpr std::string_view kStabilityDeclaration =
+#include <demos/stability/stability.sql>
+    ;
+
+constexpr const char* kStabilityIntroduction =
+    "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine. These "
+    "are inputs on which plain code goes wrong: numbers that are none, borders of cells, rays "
+    "without end, crowds, speeds, changes at the wrong moment. Each was run with every broadphase, "
+    "in a process of its own, and what it answered was compared with what looking at everything "
+    "says.";
+
+// Ours is to end whatever the machine has to do beside it.
+constexpr double kPatienceWithOurs = 10;
+
+struct StabilityOptions {
+    std::vector<std::string> only;         // ids; empty: all
+    std::vector<std::string> broadphases;  // names; empty: all
+    bool isQuick = false;
+    bool isExplained = false;
+    std::uint64_t seed = 1;
+    double caseSeconds = 2;           // of processor time for a case; ours has ten times that
+    std::optional<double> timeLimit;  // [s] of wall time, after which no case begins
+    std::string jsonFile;             // empty: none is written
+    std::string csvFile;
+    std::string htmlFile;
+    bool quiet = false;
+    bool list = false;
+};
+
+using Cases = std::vector<const HardCase*>;
+using Kinds = std::vector<const BroadphaseKind*>;
 
 void declareStability(CLI::App& app, StabilityOptions& options) {
     app.add_option("--only", options.only, "run these cases, separated by commas (see --list)")
@@ -36,7 +79,219 @@ void declareStability(CLI::App& app, StabilityOptions& options) {
     app.add_flag("--list", options.list, "say which cases and broadphases there are");
 }
 
+void printList(const Cases& cases, const Kinds& kinds, std::ostream& out) {
+    const auto print = [&](const std::string& name, std::string_view about, std::size_t width) {
+        out << "  " << name << std::string(width - name.size(), ' ') << about << '\n';
+    };
+    out << "Hard cases:\n";
+    for (const HardCase* each : cases) {
+        print(each->id, each->name, 5);
+    }
+    out << "Broadphases:\n";
+    for (const BroadphaseKind* each : kinds) {
+        print(std::string(each->name), each->description, 15);
+    }
+}
+
+// --- What is measured -----------------------------------------------------------------------------
+
+// The longest number that a narrow column shows in full is 99,999.
+std::string shortCount(std::uint64_t count) {
+    if (count < 100'000) {
+        return withThousands(count);
+    }
+    return count < 10'000'000 ? withThousands(count / 1000) + "k"
+                              : withThousands(count / 1'000'000) + "M";
+}
+
+std::string costText(double ratio) {
+    return ' ' + fixed(ratio, ratio < 9.95 ? 1 : 0) + "x";
+}
+
+std::string countsText(const CaseOutcome& outcome) {
+    std::string text = outcome.missing > 0 ? "-" + shortCount(outcome.missing) : "";
+    if (outcome.extra > 0) {
+        text += (text.empty() ? "+" : " +") + shortCount(outcome.extra);
+    }
+    return text;
+}
+
+std::string nameOf(OutcomeKind kind) {
+    static constexpr std::array<const char*, 8> kNames{"nothing", "exact", "extra", "costly",
+                                                       "refuses", "wrong", "hangs", "crashes"};
+    return kNames.at(static_cast<std::size_t>(kind));
+}
+
+// Of ours by Bullet's interface, and, on smaller inputs, of the grid alone in double precision.
+CaseOutcome runCase(const HardCase& hardCase, const BroadphaseKind& kind,
+                    const StabilityOptions& options) {
+    CaseRun<float> run;
+    run.make = [&kind](const SubjectNeeds<float>& needs) {
+        return std::make_unique<BulletSubject>(kind.make({needs.world, needs.objects, needs.grid}),
+                                               needs.objects, kind.freesProxies);
+    };
+    run.name = kind.name;
+    run.isOurs = kind.ours;
+    run.isQuick = options.isQuick;
+    run.seed = options.seed;
+    hardCase.inSingle(run);
+    if (kind.name == broadphaseKinds()[0].name && hardCase.inDouble != nullptr) {
+        CaseRun<double> grid;
+        grid.isQuick = true;
+        grid.seed = options.seed;
+        hardCase.inDouble(grid);
+        run.add(grid);
+    }
+    return run.outcome();
+}
+
+/// As rows that stability.sql names.
+Measurements runCases(const Cases& cases, const Kinds& kinds, const StabilityOptions& options,
+                      Console& console) {
+    Measurements measured;
+    measured.create("cases", {"id", "name", "input", "required", "seconds"});
+    measured.create("outcomes", {"id", "broadphase", "outcome", "text", "holds", "compared",
+                                 "missing", "extra", "cost_ratio", "note"});
+    for (const BroadphaseKind* kind : kinds) {
+        measured.add("kinds", {{"broadphase", kind->name}, {"ours", kind->ours}});
+    }
+    Progress progress(console.err, progressStyle(console, options.quiet), "hard cases",
+                      cases.size() * kinds.size());
+    std::size_t done = 0;
+    std::vector<std::string> leftOut;
+    const Stopwatch sinceBegin;
+    for (const HardCase* each : cases) {
+        if (options.timeLimit && sinceBegin.milliseconds() > 1000 * *options.timeLimit) {
+            leftOut.emplace_back(each->id);
+            continue;
+        }
+        const Stopwatch watch;
+        for (const BroadphaseKind* kind : kinds) {
+            const std::string what =
+                std::string(each->id) + ": " + each->name + ", " + std::string(kind->name);
+            const auto tell = [&] { progress.update(done, what); };
+            tell();
+            const double seconds = options.caseSeconds * (kind->ours ? kPatienceWithOurs : 1);
+            const CaseOutcome outcome =
+                runIsolated([&] { return runCase(*each, *kind, options); }, {seconds}, tell);
+            measured.add("outcomes", {{"id", each->id},
+                                      {"broadphase", kind->name},
+                                      {"outcome", nameOf(outcome.kind)},
+                                      {"text", outcomeText(outcome)},
+                                      {"holds", holds(outcome)},
+                                      {"compared", outcome.compared},
+                                      {"missing", outcome.missing},
+                                      {"extra", outcome.extra},
+                                      {"cost_ratio", outcome.costRatio},
+                                      {"note", outcome.note}});
+            ++done;
+        }
+        measured.add("cases", {{"id", each->id},
+                               {"name", each->name},
+                               {"input", each->input},
+                               {"required", each->required},
+                               {"seconds", watch.milliseconds() / 1000}});
+    }
+    measured.create("left_out", {"id"});
+    for (const std::string& id : leftOut) {
+        measured.add("left_out", {{"id", id}});
+    }
+    measured.add("run", {{"is_explained", options.isExplained},
+                         {"left_out_text", leftOutText(leftOut)},
+                         {"all_seconds", sinceBegin.milliseconds() / 1000}});
+    return measured;
+}
+
+// --- What is told ---------------------------------------------------------------------------------
+
+/// A row for each case; all about each case where that was asked for; what is not as required; the
+/// verdict.
+void printReport(const Findings& findings, const Provenance& provenance, std::ostream& out) {
+    const auto& [legend, table] = findings.printed.front();
+    printTable(table, out, true);
+    out << legend << '\n';
+    for (const std::string& explained : sentencesOf(findings.rows.at("explained"))) {
+        out << explained << '\n';
+    }
+    out << '\n';
+    printProvenance(provenance, out);
+    out << findings.verdict << '\n';
+}
+
+/// Schema "hashphase-stability".
+void writeJson(const Findings& findings, const Provenance& provenance,
+               const StabilityOptions& options, Measurements& measured, std::ostream& out) {
+    Json cases = rowsJson(findings.rows.at("cases"));
+    for (Json& each : cases) {
+        each["outcomes"] = Json::array();
+    }
+    auto of = cases.begin();
+    for (Json& outcome : rowsJson(findings.rows.at("outcomes"))) {
+        of += (*of)["id"] == outcome["id"] ? 0 : 1;
+        outcome.erase("id");
+        (*of)["outcomes"].push_back(std::move(outcome));
+    }
+    Json json{{"schema", "hashphase-stability"},
+              {"schemaVersion", 1},
+              {"provenance", provenanceJson(provenance)},
+              {"settings",
+               {{"quick", options.isQuick},
+                {"seed", options.seed},
+                {"caseTimeLimitSeconds", options.caseSeconds}}}};
+    json.update(rowsJson(findings.rows.at("end")).front());
+    json["seconds"] = valueJson(measured.ask("SELECT all_seconds FROM run").rows.at(0).at(0));
+    json["leftOut"] = sentencesOf(measured.ask("SELECT id FROM left_out"));
+    json["cases"] = std::move(cases);
+    out << textOf(json);
+}
+
+int runStability(const StabilityOptions& options, std::span<const BroadphaseKind> allKinds,
+                 std::span<const HardCase> allCases, Console& console) {
+    const Cases cases =
+        chosenOf("case", options.only, allCases, [](const HardCase& each) { return each.id; });
+    const Kinds kinds = chosenOf("broadphase", options.broadphases, allKinds,
+                                 [](const BroadphaseKind& each) { return each.name; });
+    if (options.list) {
+        printList(cases, kinds, console.out);
+        return kExitOk;
+    }
+    ResultFile json(options.jsonFile);
+    ResultFile csv(options.csvFile);
+    ResultFile html(options.htmlFile);
+    const Provenance provenance = gatherProvenance(console.commandLine);
+    Measurements measured = runCases(cases, kinds, options, console);
+    const Findings findings = findingsOf(kStabilityDeclaration, measured);
+
+    printReport(findings, provenance, console.out);
+    json.write(
+        [&](std::ostream& file) { writeJson(findings, provenance, options, measured, file); });
+    csv.write([&](std::ostream& file) { writeCsv(findings.rows.at("csv"), file); });
+    deliverPage({"Hard cases", kStabilityIntroduction, findings.verdict + ".", findings.holds,
+                 findings.sections, provenance},
+                html, console);
+    return findings.holds.value_or(true) ? kExitOk : kExitCheckFailed;
+}
+
 }  // namespace
+
+std::string outcomeText(const CaseOutcome& outcome) {
+    switch (outcome.kind) {
+        case OutcomeKind::nothing:
+            return "-";
+        case OutcomeKind::exact:
+            return "exact" + (outcome.costRatio ? costText(*outcome.costRatio) : "");
+        case OutcomeKind::costly:
+            return "costly" + costText(outcome.costRatio.value_or(0));
+        case OutcomeKind::extra:
+            return countsText(outcome);
+        case OutcomeKind::wrong:
+            return outcome.missing > 0 ? countsText(outcome) : "wrong";
+        case OutcomeKind::hangs:
+            return "> " + fixed(outcome.seconds, outcome.seconds < 1 ? 2 : 0) + " s";
+        default:
+            return nameOf(outcome.kind);
+    }
+}
 
 Subcommand stabilityCommand(std::span<const BroadphaseKind> kinds,
                             std::span<const HardCase> cases) {

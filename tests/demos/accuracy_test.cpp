@@ -120,15 +120,13 @@ TEST(Accuracy, WritesAPageAndItsDataToAFolder) {
     EXPECT_EQ(findings["checks"][0]["holds"], true);
     EXPECT_EQ(findings["choices"].size(), 3U);
     EXPECT_EQ(findings["charts"].size(), sampleCharts().size());
+    EXPECT_EQ(findings["charts"][1]["mark"], "point");
     EXPECT_TRUE(findings["charts"][1]["data"]["rows"].back()[1].is_null()) << "not measured";
     EXPECT_EQ(nlohmann::json::parse(readFile(output + "/S2.json"))["experiment"], "S2");
 
     for (const Chart& chart : sampleCharts()) {
         const std::string csv = readFile(output + "/" + chart.name + ".csv");
         EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), chart.data.rows.size() + 1);
-        const auto drawn = nlohmann::json::parse(readFile(output + "/" + chart.name + ".vl.json"));
-        EXPECT_EQ(drawn["title"]["text"][0].get<std::string>().substr(0, 4),
-                  chart.title.substr(0, 4));
     }
     EXPECT_TRUE(
         holds(readFile(output + "/advice.csv"), "Fast movers,2,Sweep::line,misses nothing,0\n"));

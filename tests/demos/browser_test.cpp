@@ -1,68 +1,78 @@
 // SPDX-License-Identifier: Zlib
+//
+// Pages as browsers show them.
+
 #include <demos/accuracy/accuracy_command.hpp>
 #include <demos/compare/compare_command.hpp>
 #include <demos/paper/paper_command.hpp>
 #include <demos/report/chart_scripts.hpp>
+#include <demos/report/json_values.hpp>
 #include <demos/report/report_command.hpp>
 #include <tests/demos/sample_experiments.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cstdlib>
+#include <fstream>
 #include <set>
 #include <sstream>
 
 namespace hashphase::demos {
 namespace {
 
-using nlohmann::json;
-
-void runProgramFor(const std::vector<std::string>& arguments) {
-    std::ostringstream out;
-    std::ostringstream err;
-    const std::vector<Experiment> experiments = sampleExperiments();
-    const std::vector<std::string> few{"--objects", "60", "--frames", "12"};
-    const std::array subcommands{
-        accuracyCommand(experiments), compareCommand(), paperCommand(),
-        reportCommand({{accuracyCommand(experiments), {}}, {compareCommand(), few}})};
-    ASSERT_EQ(runProgram(arguments, subcommands, {out, err, false, "hashphase test"}), kExitOk)
-        << err.str();
-}
-
-/// What tests/demos/browse.mjs saw.
-json browse(const TemporaryFolder& folder, const std::vector<std::string>& pages) {
-    std::string command = std::string("'" HASHPHASE_NODE "' '") + HASHPHASE_BROWSE_SCRIPT +
-                          "' '" HASHPHASE_CHROMIUM "'";
+/// What browse.mjs saw of the pages.
+Json browsed(const TemporaryFolder& folder, const std::vector<std::string>& pages) {
+    std::string command =
+        "'" HASHPHASE_NODE "' '" HASHPHASE_BROWSE_SCRIPT "' '" HASHPHASE_CHROMIUM "'";
     for (const std::string& page : pages) {
         command += " '" + page + "'";
     }
     const std::string seen = folder.file("seen.json");
     EXPECT_EQ(std::system((command + " >'" + seen + "'").c_str()), 0) << command;
-    return json::parse(std::ifstream(seen), nullptr, false);
+    return Json::parse(std::ifstream(seen), nullptr, false);
 }
 
-void expectDrawn(const json& charts, std::size_t number) {
+TEST(Charts, AreDrawnAsTheyAreDeclared) {
+    if (chartScripts().code.empty()) {
+        GTEST_SKIP() << chartScripts().whyNone;
+    }
+    const std::string command =
+        "'" HASHPHASE_NODE "' '" HASHPHASE_CHARTS_TEST "' '" HASHPHASE_CHART_PACKAGES "'";
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+}
+
+void runProgramFor(const std::vector<std::string>& arguments) {
+    const std::vector<Experiment> experiments = sampleExperiments();
+    const std::vector<std::string> few{"--objects", "60", "--frames", "12"};
+    const std::array subcommands{
+        accuracyCommand(experiments), compareCommand(), paperCommand(),
+        reportCommand({{accuracyCommand(experiments), {}}, {compareCommand(), few}})};
+    const Typed done = typed(arguments, subcommands);
+    ASSERT_EQ(done.exitCode, kExitOk) << done.err;
+}
+
+void expectDrawn(const Json& charts, std::size_t number) {
     EXPECT_EQ(charts.size(), number);
-    for (const json& chart : charts) {
+    for (const Json& chart : charts) {
         EXPECT_EQ(chart["drawn"], "yes") << chart;
         EXPECT_EQ(chart["broken"], 0) << chart;
         EXPECT_GT(chart["points"].get<int>() + chart["bars"].get<int>(), 0) << chart;
     }
 }
 
-std::set<std::string> namesOf(const json& charts) {
+std::set<std::string> namesOf(const Json& charts) {
     std::set<std::string> names;
-    for (const json& chart : charts) {
+    for (const Json& chart : charts) {
         names.insert(chart["name"].get<std::string>());
     }
     return names;
 }
 
-void expectSound(const json& page) {
-    const json& with = page["withJavaScript"];
+void expectSound(const Json& page) {
+    const Json& with = page["withJavaScript"];
     // The one fault is that of the foreign script, so that breaches are known to be seen.
     EXPECT_EQ(with["foreignScriptRan"], false);
     ASSERT_EQ(with["faults"].size(), 1U) << with["faults"];
@@ -73,7 +83,7 @@ void expectSound(const json& page) {
     EXPECT_NE(with["tooltip"], "");
     EXPECT_EQ(with["pdf"]["begin"], "%PDF");
 
-    const json& without = page["withoutJavaScript"];
+    const Json& without = page["withoutJavaScript"];
     EXPECT_EQ(without["faults"].size(), 0U) << without["faults"];
     EXPECT_EQ(without["drawings"], 0);
     EXPECT_NE(without["notice"].get<std::string>().find("JavaScript, which is off"),
@@ -95,12 +105,12 @@ TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
     runProgramFor({"report", "--quick", "--html", folder.file("joined.html")});
     runProgramFor({"paper", "--quick", "--objects", "500", "--frames", "2", "--html",
                    folder.file("paper.html")});
-    const json pages =
-        browse(folder, {folder.file("report/accuracy.html"), folder.file("compare.html"),
-                        folder.file("joined.html"), folder.file("paper.html")});
+    const Json pages =
+        browsed(folder, {folder.file("report/accuracy.html"), folder.file("compare.html"),
+                         folder.file("joined.html"), folder.file("paper.html")});
     ASSERT_EQ(pages.size(), 4U);
 
-    for (const json& page : pages) {
+    for (const Json& page : pages) {
         expectSound(page);
     }
     expectDrawn(pages[0]["withJavaScript"]["charts"], sampleCharts().size());
@@ -117,7 +127,7 @@ TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
     }
     EXPECT_GT(pages[0]["withoutJavaScript"]["rows"], rows);
 
-    const json& lines = pages[0]["withJavaScript"]["charts"][0];
+    const Json& lines = pages[0]["withJavaScript"]["charts"][0];
     EXPECT_EQ(lines["points"], 3 * 14);
     EXPECT_EQ(lines["lines"], 3 + 1) << "methods and theory";
     EXPECT_EQ(lines["texts"][5], "0") << "the lower end of an axis with 0 apart";

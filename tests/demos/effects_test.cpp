@@ -2,6 +2,7 @@
 #include <demos/effects/effects_command.hpp>
 #include <demos/effects/effects_prices.hpp>
 #include <demos/scenes/file_bytes.hpp>
+#include <tests/demos/asked.hpp>
 #include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
@@ -15,9 +16,8 @@
 namespace hashphase::demos {
 namespace {
 
-Typed runEffectsCommand(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), "effects");
-    return typed(arguments, std::array{effectsCommand()});
+Typed runEffectsCommand(const std::vector<std::string>& arguments) {
+    return typed(effectsCommand(), arguments);
 }
 
 bool has(const std::string& text, std::string_view part) {
@@ -37,12 +37,34 @@ EffectsFile smallExample(std::string_view name) {
     return {};
 }
 
-EffectPrices pricesOf(const EffectsFile& file, std::uint32_t frames) {
-    PricingSettings settings;
-    settings.frames = frames;
-    settings.warmUpFrames = 2;
-    return priceEffects(file, settings);
-}
+/// As effects.sql leaves them.
+struct Priced {
+    Measurements measured;
+    Findings findings;
+
+    Priced(const EffectsFile& file, std::uint32_t frames) : measured(measure(file, frames)) {
+        findings = effectsFindings(measured);
+    }
+
+    [[nodiscard]] std::string ask(std::string_view sql) { return asked(measured, sql); }
+
+    /// Of the whole scene, or of it without that.
+    [[nodiscard]] double mean(const std::string& name, const std::string& without = {}) {
+        return std::stod(
+            ask("SELECT number FROM means WHERE name = '" + name + "' AND variant = " +
+                (without.empty()
+                     ? "1"
+                     : "(SELECT all_without FROM compared WHERE effect = '" + without + "')")));
+    }
+
+private:
+    static Measurements measure(const EffectsFile& file, std::uint32_t frames) {
+        PricingSettings settings;
+        settings.frames = frames;
+        settings.warmUpFrames = 2;
+        return priceEffects(file, settings);
+    }
+};
 
 TEST(EffectsCommand, PrintsThePriceOfEachEffectAndWhatIsLostWithoutIt) {
     const TemporaryFolder folder;
@@ -95,47 +117,70 @@ TEST(EffectsCommand, RefusesWhatItCannotRun) {
 
 TEST(EffectPrices, RunTheSceneWithAndWithoutEachEffect) {
     const EffectsFile file = smallExample("projectiles");
-    const EffectPrices prices = pricesOf(file, 30);
-    EXPECT_EQ(prices.whole().effects, file.effects.set());
-    EXPECT_TRUE(prices.variants[1].effects.isEmpty());
-    ASSERT_EQ(prices.prices.size(), 4U);
-    for (const PricedVariant& variant : prices.variants) {
-        EXPECT_EQ(variant.frameMs.size(), prices.frames);
-        EXPECT_EQ(effectsError(onlyThese(file.effects, variant.effects)), "");
-    }
-    for (const Check& check : prices.checks) {
+    Priced priced(file, 30);
+    EXPECT_EQ(priced.ask("SELECT effects FROM variants WHERE rowid <= 2"),
+              namesOf(file.effects.set()) + "; " + namesOf({}));
+    EXPECT_EQ(priced.ask("SELECT group_concat(effect, ' ') FROM compared"),
+              "motion pairs response sweep");
+    EXPECT_EQ(priced.ask("SELECT count(DISTINCT variant), min(n), max(n) FROM (SELECT variant, "
+                         "count(DISTINCT frame) AS n FROM frames GROUP BY variant)"),
+              priced.ask("SELECT count(*) FROM variants") + " 30 30");
+    ASSERT_EQ(priced.findings.sections.at(0).checks.size(), 2U);
+    for (const Check& check : priced.findings.sections[0].checks) {
         EXPECT_TRUE(check.holds) << check.claim << ": " << check.evidence;
     }
-    EXPECT_GT(prices.whole().cost[SceneCounter::sweepersStopped], 0U);
-    EXPECT_TRUE(has(prices.prices[3].lost, "fly through"));
+    EXPECT_EQ(priced.findings.holds, true);
+    EXPECT_GT(priced.mean("sweepersStopped"), 0);
+    EXPECT_TRUE(has(priced.ask("SELECT lost FROM prices WHERE effect = 'sweep'"), "fly through"));
+}
+
+TEST(EffectPrices, DeclareWhatTheVariantsNeed) {
+    const SceneEffects effects = smallExample("paper").effects;
+    for (const Effect effect : kAllEffects) {
+        const EffectSet with = needsOf(effect) | EffectSet{effect};
+        if ((effects.set() | with) == effects.set()) {
+            const SceneEffects some = onlyThese(effects, with);
+            EXPECT_EQ(some.set(), with);
+            EXPECT_EQ(effectsError(some), "");
+        }
+    }
 }
 
 TEST(EffectPrices, FindWhatIsWrongWithoutAnEffect) {
-    const EffectsFile file = smallExample("paper");
-    const EffectPrices prices = pricesOf(file, 41);
-    EffectSet withoutGround = file.effects.set();
-    withoutGround.erase(Effect::terrain);
-    EXPECT_EQ(prices.whole().offGround, 0);
-    EXPECT_GT(prices.variant(withoutGround).offGround, 100);
-    EffectSet withoutResponse = file.effects.set();
-    withoutResponse.erase(Effect::response);
-    EXPECT_LT(prices.whole().interpenetrating,
-              0.7 * prices.variant(withoutResponse).interpenetrating);
+    Priced priced(smallExample("paper"), 41);
+    EXPECT_EQ(priced.mean("offGround"), 0);
+    EXPECT_GT(priced.mean("offGround", "terrain"), 100);
+    EXPECT_LT(priced.mean("interpenetrating"), 0.7 * priced.mean("interpenetrating", "response"));
 }
 
 TEST(EffectPrices, TellWhatIsLateByDeclaration) {
     EffectsFile file = smallExample("budget");
     file.scene.domain = 500;
-    const EffectPrices prices = pricesOf(file, 45);
-    for (const SceneCounter counter : {SceneCounter::agentsLate, SceneCounter::zonesLate,
-                                       SceneCounter::radarsLate, SceneCounter::framesCulledLate}) {
-        EXPECT_GT(prices.whole().cost[counter], 0U)
-            << sceneCounters()[static_cast<std::size_t>(counter)].name;
+    Priced priced(file, 45);
+    for (const char* counter : {"agentsLate", "zonesLate", "radarsLate", "framesCulledLate"}) {
+        EXPECT_GT(priced.mean(counter), 0) << counter;
     }
-    EffectSet withoutSleep = file.effects.set();
-    withoutSleep.erase(Effect::sleeping);
-    EXPECT_LT(prices.whole().cost[SceneCounter::bodiesMoved],
-              prices.variant(withoutSleep).cost[SceneCounter::bodiesMoved]);
+    EXPECT_LT(priced.mean("bodiesMoved"), priced.mean("bodiesMoved", "sleeping"));
+    const std::string lost = priced.ask("SELECT group_concat(lost, '; ') FROM prices");
+    EXPECT_TRUE(has(lost, " are late with it; ")) << lost;
+    EXPECT_TRUE(has(lost, "no radar; late in ")) << lost;
+}
+
+TEST(EffectPrices, SayWhatIsNotAsItMustBe) {
+    Priced priced(smallExample("projectiles"), 1);
+    priced.measured.ask("UPDATE numbers SET number = 3 WHERE variant = 2 AND name = 'boxesTested'");
+    priced.measured.ask("UPDATE results SET differs = 1 WHERE rowid = 1");
+    for (const char* made :
+         {"spreads", "means", "parts", "said", "differences", "prices", "checks", "figures"}) {
+        priced.measured.ask("DROP TABLE " + std::string(made));
+    }
+    priced.measured.ask("DROP VIEW texts");
+    const Findings broken = effectsFindings(priced.measured);
+    EXPECT_EQ(broken.holds, false);
+    EXPECT_TRUE(has(broken.verdict, "; A CHECK FAILED, see above"));
+    const std::vector<Check>& checks = broken.sections.at(0).checks;
+    EXPECT_EQ(checks.at(0).evidence, "not 0: boxesTested with " + namesOf({}) + ";");
+    EXPECT_EQ(checks.at(1).evidence.substr(0, 5), "1 of ");
 }
 
 }  // namespace

@@ -177,11 +177,11 @@ SELECT 1 AS one;
     EXPECT_EQ(chart.name, "T-quick");
     EXPECT_EQ(chart.title, "Of quick ones");
     EXPECT_EQ(chart.settings, "three frames");
-    EXPECT_EQ(chart.mark, ChartMark::kBar);
-    EXPECT_EQ(chart.x.scale, AxisScale::kNames);
-    EXPECT_EQ(chart.y.column, "ms");
-    EXPECT_EQ(chart.y.scale, AxisScale::kLogAndZero);
-    EXPECT_TRUE(chart.showFront);
+    EXPECT_EQ(chart.drawn, (std::map<std::string, std::string>{{"mark", "bar"},
+                                                               {"x", "frame names"},
+                                                               {"y", "ms log0"},
+                                                               {"series", "method"},
+                                                               {"front", "true"}}));
     EXPECT_EQ(chart.data.rows.size(), 2U);
     EXPECT_EQ(findings.tables.size(), 1U);
 }
@@ -198,14 +198,34 @@ SELECT 'b' || :frame;
 SELECT 'c';
 )sql",
                                          measured);
-    EXPECT_EQ(findings.conclusions,
-              (std::vector<std::string>{"a0", "b0", "a1", "b1", "a2", "c"}));
+    EXPECT_EQ(findings.conclusions, (std::vector<std::string>{"a0", "b0", "a1", "b1", "a2", "c"}));
+}
+
+TEST(Findings, SpreadCellsOverColumns) {
+    Measurements measured;
+    const Findings findings = findingsOf(R"sql(
+/* {"rows": "times", "spread": true} */
+VALUES ('a', 1, 'x', 5), ('a', 1, 'y', NULL), ('a', 2, 'x', 6), ('a', 2, 'y', 'seven');
+/* {"rows": "none", "spread": true} */
+SELECT 1 AS one, 2 AS name, 3 AS number WHERE 0;
+)sql",
+                                         measured);
+    const DataTable& times = findings.rows.at("times");
+    ASSERT_EQ(times.columns.size(), 4U);
+    EXPECT_EQ(times.columns[3].name, "y");
+    EXPECT_EQ(times.rows, (std::vector<std::vector<Value>>{{"a", 1.0, 5.0, Value()},
+                                                           {"a", 2.0, 6.0, "seven"}}));
+    EXPECT_EQ(findings.rows.at("none").columns.size(), 1U);
 }
 
 TEST(Findings, NameTheFaultOfADeclaration) {
     EXPECT_EQ(
         faultOf("/* {\"chart\": \"C\", \"x\": \"when\", \"y\": \"ms\"} */ SELECT ms FROM frames;"),
         "There is no column 'when'.");
+    EXPECT_EQ(faultOf("/* {\"chart\": \"C\", \"mark\": \"bars\"} */ SELECT ms FROM frames;"),
+              "Nothing is drawn as 'bars'.");
+    EXPECT_EQ(faultOf("/* {\"chart\": \"C\", \"y\": \"ms log1\"} */ SELECT ms FROM frames;"),
+              "Nothing is drawn as 'log1'.");
     EXPECT_EQ(faultOf("/* {\"shown\": \"C\"} */ SELECT ms FROM frames;"),
               "Nothing is shown as {\"shown\":\"C\"}.");
     EXPECT_EQ(faultOf("SELEC 1;"), "near \"SELEC\": syntax error in: SELEC 1;");

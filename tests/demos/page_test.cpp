@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/report/base64.hpp>
 #include <demos/report/chart_scripts.hpp>
-#include <demos/report/html.hpp>
+#include <demos/report/json_values.hpp>
 #include <demos/report/page.hpp>
 #include <demos/report/report_text.hpp>
 #include <tests/demos/sample_experiments.hpp>
@@ -73,9 +73,11 @@ TEST(Html, WritesARepeatedFirstTextOnce) {
 TEST(Page, EscapesTextsFromData) {
     Page page{kHostile, kHostile, kHostile, false, {}, {}};
     page.provenance.commandLine = kHostile;
-    Chart chart{
-        "c",   kHostile, kHostile, ChartMark::kPoint, {{{"x", kHostile}, {"m"}}, {{1.0, kHostile}}},
-        {"x"}, {"x"},    "m"};
+    const Chart chart{"c",
+                      kHostile,
+                      kHostile,
+                      {{{"x", kHostile}, {"m"}}, {{1.0, kHostile}}},
+                      {{"mark", "point"}, {"x", "x"}, {"y", "x"}, {"series", "m"}}};
     page.sections.push_back({kHostile,
                              {kHostile},
                              {kHostile},
@@ -98,6 +100,22 @@ TEST(Page, HoldsTheNumbersOfAllChartsAsTables) {
         EXPECT_NE(html.find(" id=\"" + chart.name + "\">"), std::string::npos) << chart.name;
     }
     EXPECT_EQ(count(html.substr(0, html.find("id=\"provenance\"")), "<tr>"), rows);
+}
+
+TEST(Page, HandsChartsAsDeclaredToWhatDrawsThem) {
+    if (chartScripts().code.empty()) {
+        GTEST_SKIP() << chartScripts().whyNone;
+    }
+    const std::string html = withoutScripts(samplePage());
+    for (const Chart& chart : sampleCharts()) {
+        EXPECT_EQ(count(html, ">" + jsonInScript(chartJson(chart)) + "</script>"), 1U)
+            << chart.name;
+    }
+    const Json points = chartJson(sampleCharts()[1]);
+    EXPECT_EQ(points["y"], "missed log0");
+    EXPECT_EQ(points["data"]["columns"][1]["title"], "time [ms a frame]");
+    EXPECT_EQ(points["data"]["rows"].size(), sampleCharts()[1].data.rows.size());
+    EXPECT_TRUE(points["data"]["rows"].back()[1].is_null()) << "not timed";
 }
 
 TEST(Page, DrawsNoChartOfNothing) {

@@ -149,9 +149,11 @@ TEST(PaperReport, DrawsTheLimitOfRealTimeAndNamesAnErrorBarOnlyWhereThereIsOne) 
     std::string limited;
     for (const PageSection& section : pageOf(reportOfRows(rows)).sections) {
         for (const Chart& chart : section.charts) {
-            EXPECT_EQ(chart.settings.find("percentile") != std::string::npos, !chart.low.empty())
+            EXPECT_EQ(chart.settings.find("percentile") != std::string::npos,
+                      chart.drawn.contains("low"))
                 << chart.name;
-            if (chart.theory == "limit") {
+            if (chart.drawn.contains("theory")) {
+                EXPECT_EQ(chart.drawn.at("theory"), "limit");
                 limited += chart.name + ' ';
                 EXPECT_EQ(chart.data.rows.front().back(), Value(50.0));
             }

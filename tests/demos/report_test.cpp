@@ -4,6 +4,7 @@
 #include <demos/report/report_command.hpp>
 #include <demos/report/report_text.hpp>
 #include <tests/demos/sample_experiments.hpp>
+#include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -58,10 +59,7 @@ ReportPart samplePart(const std::string& name, std::optional<bool> holds,
     return part;
 }
 
-struct ReportSeen {
-    int code = 0;
-    std::string out;
-    std::string err;
+struct ReportSeen : Typed {
     std::string html;  // without the scripts that the page brings along
 };
 
@@ -69,15 +67,9 @@ ReportSeen runReport(const std::vector<ReportPart>& parts, const std::vector<std
                      const std::string& htmlFile = {}) {
     const TemporaryFolder folder;
     const std::string path = folder.file("page.html");
-    std::vector<std::string> arguments{"report", "--html", htmlFile.empty() ? path : htmlFile};
+    std::vector<std::string> arguments{"--html", htmlFile.empty() ? path : htmlFile};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    std::ostringstream out;
-    std::ostringstream err;
-    const std::array subcommands{reportCommand(parts)};
-    ReportSeen seen;
-    seen.code = runProgram(arguments, subcommands, {out, err, false, "hashphase report"});
-    seen.out = out.str();
-    seen.err = err.str();
+    ReportSeen seen{typed(reportCommand(parts), arguments), {}};
     std::ifstream file(path);
     seen.html.assign(std::istreambuf_iterator<char>(file), {});
     const std::string_view code = chartScripts().code;
@@ -104,7 +96,7 @@ std::vector<std::string> matches(const std::string& text, const char* pattern) {
 
 TEST(JoinedReport, HasUniqueIdsAndALinkToEachPartAndSection) {
     const ReportSeen seen = runReport(twoParts(), {});
-    EXPECT_EQ(seen.code, kExitOk) << seen.err;
+    EXPECT_EQ(seen.exitCode, kExitOk) << seen.err;
     const std::vector<std::string> all = matches(seen.html, " id=\"([^\"]*)\"");
     const std::set<std::string> ids(all.begin(), all.end());
     EXPECT_EQ(ids.size(), all.size());
@@ -135,7 +127,7 @@ TEST(JoinedReport, SaysWhatEachPartFoundAndHowToHaveItAlone) {
 
 TEST(JoinedReport, IsBadIfOneOfItsPartsIs) {
     const ReportSeen seen = runReport(twoParts(false), {});
-    EXPECT_EQ(seen.code, kExitCheckFailed);
+    EXPECT_EQ(seen.exitCode, kExitCheckFailed);
     EXPECT_NE(seen.html.find("<p class=\"verdict bad\">Checked 2 of 2 parts: "
                              "checks of 1 are BROKEN.</p>"),
               std::string::npos);
@@ -145,7 +137,7 @@ TEST(JoinedReport, IsBadIfOneOfItsPartsIs) {
 
 TEST(JoinedReport, DoesNotHoldWhereNothingWasChecked) {
     const ReportSeen seen = runReport(twoParts(std::nullopt), {});
-    EXPECT_EQ(seen.code, kExitOk) << "what was checked holds";
+    EXPECT_EQ(seen.exitCode, kExitOk) << "what was checked holds";
     EXPECT_NE(seen.html.find("<p class=\"verdict\">Checked 1 of 2 parts: all "
                              "checks hold; not checked: beta.</p>"),
               std::string::npos);
@@ -155,7 +147,7 @@ TEST(JoinedReport, DoesNotHoldWhereNothingWasChecked) {
     EXPECT_NE(seen.html.find("<li>Not checked: Verdict of beta. (beta, "), std::string::npos);
 
     const ReportSeen none = runReport(twoParts(std::nullopt), {"--only", "beta"});
-    EXPECT_EQ(none.code, kExitCheckFailed);
+    EXPECT_EQ(none.exitCode, kExitCheckFailed);
     EXPECT_NE(none.html.find("<p class=\"verdict unchecked\">Checked 0 of 1 part; "
                              "not checked: beta.</p>"),
               std::string::npos);
@@ -166,70 +158,10 @@ TEST(JoinedReport, GoesOnAfterAPartThatThrows) {
     std::vector<ReportPart> parts = twoParts();
     parts[0].command.run = [](Console&) -> int { throw std::runtime_error("no more <paper>"); };
     const ReportSeen seen = runReport(parts, {});
-    EXPECT_EQ(seen.code, kExitCheckFailed);
+    EXPECT_EQ(seen.exitCode, kExitCheckFailed);
     EXPECT_NE(seen.html.find("It did not come to its end: no more &lt;paper&gt;"),
               std::string::npos);
     EXPECT_NE(seen.html.find("<h2>Page of beta</h2>"), std::string::npos);
-}
-
-TEST(JoinedReport, HoldsAllNumbersWithoutJavaScriptAndNeedsNothingElse) {
-    const std::string html = runReport(twoParts(), {}).html;
-    std::size_t rows = 0;
-    for (const Chart& chart : sampleCharts()) {
-        rows += chart.data.rows.size() + 1;
-    }
-    const std::string parts = html.substr(0, html.find("id=\"provenance\""));
-    EXPECT_EQ(matches(parts, "(<tr>)").size(), 2 * rows);
-    EXPECT_EQ(html.find(" src="), std::string::npos);
-    EXPECT_EQ(html.find("<link"), std::string::npos);
-}
-
-Page pageOfSeries(const std::vector<std::string>& names) {
-    Chart chart{"a", "A", "", ChartMark::kLine, {{{"x"}, {"m"}}, {}}, {"x"}, {"x"}, "m"};
-    for (const std::string& name : names) {
-        chart.data.add({1.0, name});
-    }
-    Page page{"Title", "", "", true, {}, {}};
-    page.sections.push_back({"S", {}, {}, {}, {chart}, {}, {}});
-    return page;
-}
-
-TEST(JoinedReport, DrawsASeriesInOneColourInAllParts) {
-    Page page{"Title", "", "", true, {}, {}};
-    page.parts = {pageOfSeries({"one", "two"}), pageOfSeries({"three", "two"})};
-    const SeriesLooks looks = seriesLooks(page);
-    EXPECT_EQ(looks.size(), 3U);
-    EXPECT_NE(looks.at("two").colour, looks.at("one").colour);
-    EXPECT_NE(looks.at("two").colour, looks.at("three").colour);
-}
-
-TEST(JoinedReport, DrawsAllVariantsOfAMethodInItsColour) {
-    Page page{"Title", "", "", true, {}, {}};
-    page.parts = {pageOfSeries({"un-optimized", "grid, cells of 5 m", "grid, cells of 100 m",
-                                "hash, cells of 5 m", "hash, cells of 100 m", "hash, automatic"}),
-                  pageOfSeries({"grid", "hash"})};
-    const SeriesLooks looks = seriesLooks(page);
-    const std::array<std::vector<std::string>, 3> methods{
-        {{"un-optimized"},
-         {"grid", "grid, cells of 5 m", "grid, cells of 100 m"},
-         {"hash", "hash, cells of 5 m", "hash, cells of 100 m", "hash, automatic"}}};
-    std::set<std::size_t> colours;
-    for (const std::vector<std::string>& series : methods) {
-        std::set<std::size_t> ofMethod;
-        std::set<std::size_t> dashes;
-        for (const std::string& name : series) {
-            ofMethod.insert(looks.at(name).colour);
-            dashes.insert(looks.at(name).dash);
-        }
-        EXPECT_EQ(ofMethod.size(), 1U) << series[0];
-        EXPECT_EQ(dashes.size(), series.size()) << series[0];
-        colours.merge(ofMethod);
-    }
-    EXPECT_EQ(colours.size(), methods.size());
-    const std::set<std::size_t> shapes{looks.at("hash, cells of 5 m").shape,
-                                       looks.at("hash, cells of 100 m").shape,
-                                       looks.at("hash, automatic").shape};
-    EXPECT_EQ(shapes.size(), 3U) << "in one chart";
 }
 
 TEST(JoinedReport, HandsItsOptionsToTheParts) {
@@ -239,7 +171,7 @@ TEST(JoinedReport, HandsItsOptionsToTheParts) {
                                         samplePart("beta", true, other)};
     const ReportSeen seen = runReport(
         parts, {"--quick", "--seed", "9", "--time-limit", "1000", "--quiet", "--only", "alpha"});
-    EXPECT_EQ(seen.code, kExitOk);
+    EXPECT_EQ(seen.exitCode, kExitOk);
     EXPECT_EQ(seen.err, "");
     EXPECT_EQ(call->size, 3U);
     EXPECT_EQ(call->seed, 9U);
@@ -258,7 +190,7 @@ TEST(JoinedReport, SaysWhatItLeftOutForWantOfTime) {
         return run(console);
     };
     const ReportSeen seen = runReport(parts, {"--time-limit", "0.2"});
-    EXPECT_EQ(seen.code, kExitOk);
+    EXPECT_EQ(seen.exitCode, kExitOk);
     EXPECT_NE(seen.html.find(">Checked 1 of 2 parts: all checks hold; "
                              "left out for want of time: beta.</p>"),
               std::string::npos);
@@ -276,12 +208,12 @@ TEST(JoinedReport, NamesTenOfWhatWasLeftOut) {
 TEST(JoinedReport, RefusesWhatItDoesNotKnow) {
     EXPECT_EQ(runReport(twoParts(), {"--only", "alpha,bta"}).err,
               "hashphase: There is no part 'bta'; did you mean 'beta'?\n");
-    EXPECT_EQ(runReport(twoParts(), {"--only", "alpha,bta"}).code, kExitUsage);
-    EXPECT_EQ(runReport(twoParts(), {"--quik"}).code, kExitUsage);
-    EXPECT_EQ(runReport(twoParts(), {"--time-limit", "nan"}).code, kExitUsage);
-    EXPECT_EQ(runReport(twoParts(), {"--seed", "-1"}).code, kExitUsage);
+    EXPECT_EQ(runReport(twoParts(), {"--only", "alpha,bta"}).exitCode, kExitUsage);
+    EXPECT_EQ(runReport(twoParts(), {"--quik"}).exitCode, kExitUsage);
+    EXPECT_EQ(runReport(twoParts(), {"--time-limit", "nan"}).exitCode, kExitUsage);
+    EXPECT_EQ(runReport(twoParts(), {"--seed", "-1"}).exitCode, kExitUsage);
     const ReportSeen seen = runReport(twoParts(), {}, "/no/such/folder/page.html");
-    EXPECT_EQ(seen.code, kExitUsage);
+    EXPECT_EQ(seen.exitCode, kExitUsage);
     EXPECT_EQ(seen.out, "") << "nothing was run";
 }
 

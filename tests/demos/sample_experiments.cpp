@@ -18,7 +18,6 @@ Chart lines() {
         "What moves further in a step than a wall is thick goes through it, unless the step "
         "is swept",
         "Walls from 1 mm to 1 m, 20,000 shots each, seed 1.",
-        ChartMark::kLine,
         {{{"method", "method"},
           {"ratio", "step / thickness"},
           {"missed", "missed contacts"},
@@ -26,12 +25,13 @@ Chart lines() {
           {"high", "high"},
           {"theory", "theory: 1 - (T + 2r) / (v dt)"}},
          {}},
-        {"ratio", AxisScale::kLog},
-        {"missed", AxisScale::kLogAndZero},
-        "method",
-        "low",
-        "high"};
-    chart.theory = "theory";
+        {{"mark", "line"},
+         {"x", "ratio log"},
+         {"y", "missed log0"},
+         {"series", "method"},
+         {"low", "low"},
+         {"high", "high"},
+         {"theory", "theory"}}};
     for (const std::string& method : kMethods) {
         const double factor = method == kMethods[0] ? 1 : method == kMethods[1] ? 0 : 0.003;
         for (double ratio = 0.125; ratio <= 1024; ratio *= 2) {
@@ -48,17 +48,17 @@ Chart points() {
     Chart chart{"S1-front",
                 "Less time costs accuracy",
                 "30,000 boxes, 60 frames.",
-                ChartMark::kPoint,
                 {{{"method", "method"},
                   {"ms", "time [ms a frame]"},
                   {"missed", "missed [%]"},
                   {"step", "time step"}},
                  {}},
-                {"ms", AxisScale::kLog},
-                {"missed", AxisScale::kLogAndZero},
-                "method"};
-    chart.label = "step";
-    chart.showFront = true;
+                {{"mark", "point"},
+                 {"x", "ms log"},
+                 {"y", "missed log0"},
+                 {"series", "method"},
+                 {"label", "step"},
+                 {"front", "true"}}};
     int i = 0;
     for (const std::string& method : kMethods) {
         ++i;
@@ -75,18 +75,18 @@ Chart bars(const std::string& name, const std::string& ending) {
     Chart chart{name,
                 "Objects that are in sight and are not drawn, or are drawn and out of sight",
                 "50,000 objects, 100 cameras.",
-                ChartMark::kBar,
                 {{{"test", "test"},
                   {"camera", "camera"},
                   {"culled", "falsely culled"},
                   {"low", "low"},
                   {"high", "high"}},
                  {}},
-                {"test", AxisScale::kNames},
-                {"culled", AxisScale::kLogAndZero},
-                "camera",
-                "low",
-                "high"};
+                {{"mark", "bar"},
+                 {"x", "test names"},
+                 {"y", "culled log0"},
+                 {"series", "camera"},
+                 {"low", "low"},
+                 {"high", "high"}}};
     for (const std::string test : {"corners", "planes", "exact"}) {
         for (const std::string camera : {"level", "looking down"}) {
             const double culled = test == "exact" ? 0 : test == "planes" ? 0.02 : 0.3;
@@ -101,12 +101,9 @@ Chart cells() {
         "S1-cells",
         "Time by cell size and number",
         "Uniform boxes.",
-        ChartMark::kCell,
         {{{"number", "objects"}, {"cell", "cell / mean extent"}, {"ms", "time [ns an object]"}},
          {}},
-        {"number", AxisScale::kNames},
-        {"cell", AxisScale::kNames}};
-    chart.shade = {"ms", AxisScale::kLog};
+        {{"mark", "cell"}, {"x", "number names"}, {"y", "cell names"}, {"shade", "ms log"}}};
     for (const double number : {1000.0, 10000.0, 100000.0, 1000000.0}) {
         for (double cell = 0.25; cell <= 64; cell *= 2) {
             const Value time = cell == 64 && number == 1000
@@ -123,10 +120,8 @@ Chart plainLine() {
     Chart chart{"S1-plain",
                 "A line",
                 "None.",
-                ChartMark::kLine,
                 {{{"slope", "slope [degrees]"}, {"depth"}}, {}},
-                {"slope"},
-                {"depth"}};
+                {{"x", "slope"}, {"y", "depth"}}};
     for (int slope = 0; slope <= 80; slope += 10) {
         chart.data.add({static_cast<double>(slope), 1 - std::cos(slope * 3.14159 / 180)});
     }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/stability/isolation.hpp>
-#include <demos/stability/report.hpp>
 #include <demos/stability/stability_command.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <tests/demos/typed.hpp>

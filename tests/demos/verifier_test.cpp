@@ -112,20 +112,12 @@ TEST(Verifier, CallsAnExtraPairStaleWhileItIsReportedSinceItOverlapped) {
     EXPECT_EQ(verifier.judge(pair, none).stale, 0U) << "reported anew, it is merely extra";
 }
 
-TEST(Statistics, MedianAndPercentilesInterpolateBetweenNeighbours) {
-    const Spread spread = spreadOf({40, 10, 30, 20});
-    EXPECT_DOUBLE_EQ(spread.median, 25);
-    EXPECT_DOUBLE_EQ(spread.low, 11.5);
-    EXPECT_DOUBLE_EQ(spread.high, 38.5);
+TEST(Statistics, PercentilesInterpolateBetweenNeighbours) {
+    EXPECT_DOUBLE_EQ(percentile({10, 20, 30, 40}, 0.5), 25);
+    EXPECT_DOUBLE_EQ(percentile({10, 20, 30, 40}, 0.05), 11.5);
     EXPECT_DOUBLE_EQ(percentile({1, 2, 3}, 0), 1);
     EXPECT_DOUBLE_EQ(percentile({1, 2, 3}, 1), 3);
-}
-
-TEST(Statistics, OfASingleValueAreThatValue) {
-    const Spread spread = spreadOf({7});
-    EXPECT_DOUBLE_EQ(spread.low, 7);
-    EXPECT_DOUBLE_EQ(spread.median, 7);
-    EXPECT_DOUBLE_EQ(spread.high, 7);
+    EXPECT_DOUBLE_EQ(percentile({7}, 0.95), 7) << "of a single value that value";
 }
 
 TEST(CompareFindings, LeaveOutWarmUpFramesFromTimesButNotFromCounts) {

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Zlib
+//
+// node charts_test.mjs <folder of the packages>
+//
+// What charts.js makes of declared charts; browser_test.cpp sees them drawn.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { runInThisContext } from "node:vm";
+
+const [packages] = process.argv.slice(2);
+for (const script of [
+    join(packages, "vega/build/vega.min.js"),
+    join(packages, "vega-lite/build/vega-lite.min.js"),
+    new URL("../../demos/report/charts.js", import.meta.url),
+]) {
+    runInThisContext(readFileSync(script, "utf8"));
+}
+const { vega, vegaLite, axisOf, chartSpec, labelPlaces, logTicks, looksOf } = globalThis;
+
+const chartOf = (declared, columns, rows) =>
+    ({ title: "t", mark: "point", ...declared, data: { columns: columns.map((name) => ({ name, title: "" })), rows } });
+const yChart = (y, ...ys) => chartOf({ x: "x", y }, ["x", "y"], ys.map((value, i) => [i + 1, value]));
+const ofSeries = (...names) =>
+    chartOf({ x: "x", y: "x", series: "m" }, ["x", "m"], names.map((name) => [1, name]));
+
+/// The rows of a layer as they are drawn, by the channels of what is drawn.
+async function drawn(chart, layer) {
+    const spec = chartSpec(chart, looksOf([chart]));
+    const only = { ...spec, layer: [spec.layer[layer]] };
+    const view = new vega.View(vega.parse(vegaLite.compile(only).spec), { renderer: "none" });
+    await view.runAsync();
+    const marks = (item) => (item.marktype && item.marktype !== "group" && item.role === "mark" ? [item] : [])
+        .concat((item.items ?? []).flatMap(marks));
+    return marks(view.scenegraph().root).flatMap((mark) => mark.items);
+}
+
+test("Ticks are decades, and fewer of them where they are many", () => {
+    assert.deepEqual(logTicks(0.005, 700), [0.01, 0.1, 1, 10, 100]);
+    const many = logTicks(1e-12, 1e12);
+    assert(many.length >= 3 && many.length <= 9, many);
+});
+
+test("Ticks are round numbers within a decade", () => {
+    assert.deepEqual(logTicks(0.9, 30), [1, 2, 5, 10, 20]);
+    assert.deepEqual(logTicks(2.05, 2.95), [2.2, 2.4, 2.6, 2.8]);
+    assert.deepEqual(logTicks(3, 3), [3]);
+});
+
+test("Zero is apart below the smallest number, and labelled so", async () => {
+    const chart = yChart("y log0", 0, 0.01, 1);
+    const { shareOf, channel } = axisOf(chart, chart.y);
+    assert(shareOf(0) === 0 && shareOf(0.01) > 0.1 && shareOf(0.01) < 0.15, shareOf(0.01));
+    assert.equal(shareOf(1), 1);
+    assert.match(channel.axis.labelExpr, /^datum.value < 0.01 \? '0'/);
+    const [zero, hundredth, one] = (await drawn(chart, 0)).map((point) => point.y);
+    assert(zero > hundredth + 20 && hundredth > one, [zero, hundredth, one]);
+});
+
+test("An axis has no place for zero where there is none", () => {
+    const chart = yChart("y log0", 0.5, 1);
+    assert.equal(axisOf(chart, chart.y).begin, 0.5);
+});
+
+test("An axis is straight where all is zero or nothing", () => {
+    for (const values of [[0, 0], [null, null]]) {
+        const chart = yChart("y log0", ...values);
+        assert.equal(axisOf(chart, chart.y).channel.scale, undefined);
+    }
+});
+
+test("What a logarithm does not reach, and nothing, is not drawn", async () => {
+    assert.equal((await drawn(yChart("y log", 0, 5, null, 6, -1), 0)).length, 2);
+});
+
+test("Bars on a logarithmic axis begin below the smallest number", async () => {
+    const chart = { ...yChart("y log", 0.02, 5), mark: "bar", x: "x names" };
+    const [least] = await drawn(chart, 0);
+    assert(least.height > 20, least.height);
+});
+
+test("The front holds the points that no other beats in both", async () => {
+    const rows = [[3, 1], [1, 9], [2, 4], [4, 1], [2, 5], [5, null]];
+    const chart = chartOf({ x: "x", y: "y", front: "true" }, ["x", "y"], rows);
+    const front = (await drawn(chart, 0)).map(({ datum }) => [datum.x, datum.y]);
+    assert.deepEqual(front, [[1, 9], [2, 4], [3, 1]]);
+});
+
+test("Series that share a theory have one line of it, others one each", async () => {
+    const theories = (second) => chartOf({ mark: "line", x: "x", y: "y", series: "m", theory: "t" }, ["x", "y", "m", "t"],
+        [[1, 1, "a", 1], [2, 1, "a", 2], [1, 1, "b", 1], [2, 1, "b", second]]);
+    const colours = async (chart) => new Set((await drawn(chart, 1)).map(({ stroke }) => stroke)).size;
+    assert.equal(await colours(theories(2)), 1);
+    assert.equal(await colours(theories(3)), 2);
+});
+
+test("Lines go through the points in the order of the rows", async () => {
+    const chart = chartOf({ mark: "line", x: "x", y: "y" }, ["x", "y"], [[2, 1], [1, 2], [3, 3]]);
+    assert.deepEqual((await drawn(chart, 0)).map(({ datum }) => datum.x), [2, 1, 3]);
+});
+
+test("Numbers that name rows of cells grow upwards", () => {
+    const chart = chartOf({ mark: "cell", x: "x names", y: "y names", shade: "z log" }, ["x", "y", "z"],
+        [["a", 1000, 3], ["a", 20000, 4]]);
+    assert.deepEqual(chartSpec(chart, new Map()).encoding.y.sort, ["20,000", "1,000"]);
+});
+
+test("Labels keep apart from each other and from the sides", () => {
+    const at = (x, label) => ({ x, y: 100, label });
+    const places = labelPlaces([at(100, "label"), at(100, "label"), at(100, "label"), at(658, "at the side")]);
+    assert.equal(new Set(places.slice(0, 3).map(String)).size, 3);
+    assert.equal(places[3][0], "right");
+});
+
+test("Series look the same in all charts and differ within one", () => {
+    const names = Array.from({ length: 40 }, (_, i) => `method ${i}`);
+    const all = [names.slice(0, 7), names.slice(6, 13), names.slice(13)].map((some) => ofSeries(...some));
+    const looks = looksOf(all);
+    assert.equal(looks.size, 40);
+    const different = (chart, ...keys) =>
+        new Set(chart.data.rows.map(([, name]) => keys.map((key) => looks.get(name)[key]).join())).size;
+    assert.equal(different(all[0], "colour"), 7);
+    assert.equal(different(all[1], "colour"), 7);
+    assert.equal(different(all[2], "colour", "shape"), 27);
+});
+
+test("Series of one colour in a chart differ in shape, however many others there are", () => {
+    const looks = looksOf([ofSeries("p, 1", ..."12345".split("").map((i) => `q, ${i}`), "p, 2")]);
+    assert.equal(looks.get("p, 1").colour, looks.get("p, 2").colour);
+    assert.notEqual(looks.get("p, 1").shape, looks.get("p, 2").shape);
+});
+
+test("All variants of a method have its colour, and dashes and shapes of their own", () => {
+    const variants = ["hash, cells of 5 m", "hash, cells of 100 m", "hash, automatic"];
+    const looks = looksOf([
+        ofSeries("un-optimized", "grid, cells of 5 m", "grid, cells of 100 m", ...variants),
+        ofSeries("grid", "hash"),
+    ]);
+    const of = (key, ...names) => new Set(names.map((name) => looks.get(name)[key]));
+    const methods = [["un-optimized"], ["grid", "grid, cells of 5 m", "grid, cells of 100 m"], ["hash", ...variants]];
+    for (const series of methods) {
+        assert.equal(of("colour", ...series).size, 1, series[0]);
+        assert.equal(of("dash", ...series).size, series.length, series[0]);
+    }
+    assert.equal(of("colour", ...methods.map(([first]) => first)).size, 3);
+    assert.equal(of("shape", ...variants).size, 3);
+});
+
+test("Columns that Vega would read as paths are columns", async () => {
+    const chart = chartOf({ x: "x", y: "x", series: "method.of[x]" }, ["x", "method.of[x]"], [[1, "m"], [2, "n"]]);
+    const [one, other] = await drawn(chart, 0);
+    assert.deepEqual(one.tooltip, { x: "1", "method.of[x]": "m" });
+    assert.deepEqual([one.fill, other.fill], ["var(--series-0)", "var(--series-1)"]);
+});
