@@ -7,7 +7,7 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr float kStep = 0.2F;  // [m] a frame and axis: up to 12 m/s
+constexpr float kLongestStep = 0.2F;  // [m] a frame and axis: up to 12 m/s
 
 Vector3<float> pointIn(Random& random, const Aabb<float>& room) {
     Vector3<float> point;
@@ -91,7 +91,7 @@ void BrownianScene::advance() {
 }
 
 BrownianBoxes uniformBoxes(std::size_t objects, std::uint64_t seed) {
-    return scatterIn(always(roomFor(objects, kMeanCubedSum, 2)), objects, seed, kStep,
+    return scatterIn(always(roomFor(objects, kMeanCubedSum, 2)), objects, seed, kLongestStep,
                      halfEdgesOfAboutAMetre);
 }
 
@@ -109,7 +109,7 @@ BrownianBoxes pileBoxes(std::size_t objects, std::uint64_t seed) {
         }
         return pile;
     };
-    return scatterIn(pileOf, objects, seed, kStep / 4, halfEdgesOfAboutAMetre);
+    return scatterIn(pileOf, objects, seed, kLongestStep / 4, halfEdgesOfAboutAMetre);
 }
 
 BrownianBoxes logSizeBoxes(std::size_t objects, std::uint64_t seed) {
@@ -121,7 +121,7 @@ BrownianBoxes logSizeBoxes(std::size_t objects, std::uint64_t seed) {
         const float edge = kSmallest * std::pow(kLargest / kSmallest, random.unit());
         return Vector3<float>::Constant(edge / 2);
     };
-    return scatterIn(always(roomFor(objects, kLogMeanCubedSum, 4)), objects, seed, kStep,
+    return scatterIn(always(roomFor(objects, kLogMeanCubedSum, 4)), objects, seed, kLongestStep,
                      halfEdges);
 }
 
