@@ -13,7 +13,7 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr unsigned short kMostBodies = 1024;
+constexpr unsigned short kMostProxies = 1024;
 constexpr double kReach = 128;  // of a world, from its middle [m]
 
 PhysicsBroadphase sweepingHash() {
@@ -36,7 +36,7 @@ template <class AxisSweep>
 std::unique_ptr<btBroadphaseInterface> makeAxisSweep(PairCache* cache, double halfSide) {
     const auto side = static_cast<btScalar>(halfSide);
     const btVector3 corner(side, side, side);
-    return std::make_unique<AxisSweep>(-corner, corner, kMostBodies, cache, true);
+    return std::make_unique<AxisSweep>(-corner, corner, kMostProxies, cache, true);
 }
 
 /// Whether a step is later than another; -1 is never.

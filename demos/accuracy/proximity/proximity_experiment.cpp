@@ -18,17 +18,13 @@ constexpr std::string_view kProximityDeclaration =
 constexpr double kAgentEdge = 0.5;      // [m]
 constexpr double kStepByRadius = 0.02;  // on an axis, in a frame
 
-double square(double number) {
-    return number * number;
-}
-
 /// How many of those that an estimate by cells finds are really near. Agents of edge e lie
 /// anywhere. The cells that the box of a ball of radius r touches are 2 r + c wide on average, c
 /// being their edge, and an agent touches them when its centre is at most e / 2 outside; so on a
 /// plain pi r^2 / (2 r + c + e)^2, and in space 4/3 pi r^3 / (2 r + c + e)^3.
 double estimatePrecision(const Crowd& crowd) {
-    return std::numbers::pi * square(crowd.radius) /
-           square(2 * crowd.radius + crowd.cellSize() + kAgentEdge);
+    const double edge = 2 * crowd.radius + crowd.cellSize() + kAgentEdge;
+    return std::numbers::pi * (crowd.radius * crowd.radius) / (edge * edge);
 }
 
 AgentPlan agentPlan(const Crowd& crowd) {
@@ -157,7 +153,7 @@ private:
         Truth truth;
         for (std::uint32_t other = 0; other < crowd_.agents; ++other) {
             const Vector3<double> way = frame.boxes[other].cast<double>().center() - place;
-            if (other != agent && way.squaredNorm() <= square(crowd_.radius)) {
+            if (other != agent && way.squaredNorm() <= crowd_.radius * crowd_.radius) {
                 truth.neighbours.push_back(other);
                 ++truth.colours[colours_[other]];
             }
