@@ -33,7 +33,7 @@ std::unique_ptr<btBroadphaseInterface> makeDeferredDbvt(PairCache* cache) {
 }
 
 template <class AxisSweep>
-std::unique_ptr<btBroadphaseInterface> makeAxisSweep(PairCache* cache, double halfSide) {
+std::unique_ptr<btBroadphaseInterface> makeSweepWithin(PairCache* cache, double halfSide) {
     const auto side = static_cast<btScalar>(halfSide);
     const btVector3 corner(side, side, side);
     return std::make_unique<AxisSweep>(-corner, corner, kMostProxies, cache, true);
@@ -61,10 +61,10 @@ std::vector<PhysicsBroadphase> hardBroadphases(const HardWorld& world) {
         physicsBroadphase(kDbvtName),
         {std::string(kDbvtName) + ", deferred", false, false, makeDeferredDbvt},
         {"btAxisSweep3", false, false,
-         [halfSide](PairCache* cache) { return makeAxisSweep<btAxisSweep3>(cache, halfSide); }},
+         [halfSide](PairCache* cache) { return makeSweepWithin<btAxisSweep3>(cache, halfSide); }},
         {"bt32BitAxisSweep3", false, false,
          [halfSide](PairCache* cache) {
-             return makeAxisSweep<bt32BitAxisSweep3>(cache, halfSide);
+             return makeSweepWithin<bt32BitAxisSweep3>(cache, halfSide);
          }},
     };
 }

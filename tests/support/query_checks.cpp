@@ -11,46 +11,6 @@
 
 namespace hashphase::test {
 
-template <class Scalar, class Region>
-typename CollectKeys<Scalar>::Found QueryCheck<Scalar, Region>::find(const Grid<Scalar>& grid,
-                                                                     const Region& region) {
-    CollectKeys<Scalar> found;
-    const QueryCost cost = grid.visit(region, found);
-    EXPECT_EQ(cost.hits, found.sorted().size());
-    if constexpr (!requires { region.volume(); }) {  // of which cells may be taken without tests
-        EXPECT_GE(cost.boxesTested, cost.hits);
-    }
-    return found.sorted();
-}
-
-template <class Scalar, class Region>
-std::size_t QueryCheck<Scalar, Region>::expectLikeBruteForce(
-    const Grid<Scalar>& grid, std::span<const Placed<Scalar>> proxies, const Region& region) {
-    CollectKeys<Scalar> all;
-    visitByBruteForce(proxies, region, all);
-    const auto expected = all.sorted();
-    EXPECT_EQ(differences(find(grid, region), expected), "");
-
-    CollectClosest<Scalar> closest;
-    CollectClosest<Scalar> expectedClosest;
-    grid.visit(region, closest);
-    visitByBruteForce(proxies, region, expectedClosest);
-    EXPECT_EQ(closest.found(), expectedClosest.found());
-    EXPECT_EQ(closest.key(), expectedClosest.key());
-
-    CollectAny any;
-    grid.visit(region, any);
-    EXPECT_EQ(any.found().isNull(), expected.empty());
-    EXPECT_TRUE(expected.empty() ||
-                std::any_of(expected.begin(), expected.end(),
-                            [&any](const auto& found) { return found.first == any.found(); }));
-
-    CollectCount count;
-    grid.visit(region, count);
-    EXPECT_EQ(count.count(), expected.size());
-    return expected.size();
-}
-
 template <class Scalar>
 void expectCellLikeBruteForce(const Grid<Scalar>& grid, std::span<const Placed<Scalar>> proxies,
                               const std::array<std::int64_t, 3>& cell) {

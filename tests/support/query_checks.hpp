@@ -2,7 +2,7 @@
 #pragma once
 
 // Every query of a grid against its brute-force twin, and random regions where proxies are. Compiled once for
-// all test programs, for the regions of the library in float and double.
+// all test programs, for the regions of the grid in float and double.
 
 #include <broadphase/cells_region.hpp>
 #include <broadphase/convex_region.hpp>
@@ -12,6 +12,9 @@
 #include <tests/support/oracles.hpp>
 #include <tests/support/random.hpp>
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -41,6 +44,61 @@ struct QueryCheck {
                                             std::span<const Placed<Scalar>> proxies,
                                             const Region& region);
 };
+
+template <class Scalar, class Region>
+typename CollectKeys<Scalar>::Found QueryCheck<Scalar, Region>::find(const Grid<Scalar>& grid,
+                                                                     const Region& region) {
+    CollectKeys<Scalar> found;
+    const QueryCost cost = grid.visit(region, found);
+    EXPECT_EQ(cost.hits, found.sorted().size());
+    if constexpr (!requires { region.volume(); }) {  // of which cells may be taken without tests
+        EXPECT_GE(cost.boxesTested, cost.hits);
+    }
+    return found.sorted();
+}
+
+template <class Scalar, class Region>
+std::size_t QueryCheck<Scalar, Region>::expectLikeBruteForce(
+    const Grid<Scalar>& grid, std::span<const Placed<Scalar>> proxies, const Region& region) {
+    CollectKeys<Scalar> all;
+    visitByBruteForce(proxies, region, all);
+    const auto expected = all.sorted();
+    EXPECT_EQ(differences(find(grid, region), expected), "");
+
+    CollectClosest<Scalar> closest;
+    CollectClosest<Scalar> expectedClosest;
+    grid.visit(region, closest);
+    visitByBruteForce(proxies, region, expectedClosest);
+    EXPECT_EQ(closest.found(), expectedClosest.found());
+    EXPECT_EQ(closest.key(), expectedClosest.key());
+
+    CollectAny any;
+    grid.visit(region, any);
+    EXPECT_EQ(any.found().isNull(), expected.empty());
+    EXPECT_TRUE(expected.empty() ||
+                std::any_of(expected.begin(), expected.end(),
+                            [&any](const auto& found) { return found.first == any.found(); }));
+
+    CollectCount count;
+    grid.visit(region, count);
+    EXPECT_EQ(count.count(), expected.size());
+    return expected.size();
+}
+
+extern template struct QueryCheck<float, BoxRegion<float>>;
+extern template struct QueryCheck<float, SphereRegion<float>>;
+extern template struct QueryCheck<float, RayRegion<float>>;
+extern template struct QueryCheck<float, ConvexRegion<float>>;
+extern template struct QueryCheck<float, PositionRegion<float>>;
+extern template struct QueryCheck<float, CellsRegion<float>>;
+extern template struct QueryCheck<float, MovingBoxRegion<float>>;
+extern template struct QueryCheck<double, BoxRegion<double>>;
+extern template struct QueryCheck<double, SphereRegion<double>>;
+extern template struct QueryCheck<double, RayRegion<double>>;
+extern template struct QueryCheck<double, ConvexRegion<double>>;
+extern template struct QueryCheck<double, PositionRegion<double>>;
+extern template struct QueryCheck<double, CellsRegion<double>>;
+extern template struct QueryCheck<double, MovingBoxRegion<double>>;
 
 /// What the grid finds, with keys, sorted.
 template <class Scalar, class Region>

@@ -100,7 +100,7 @@ btScalar castByWorld(const btVector3& from, const btVector3& to, const btCollisi
 /// zigzags along other diagonals where it casts rays than where it collides.
 btScalar castByTriangles(const btVector3& from, const btVector3& to, const btCollisionShape& shape,
                          const btTransform& transform) {
-    struct Closest : btTriangleRaycastCallback {
+    struct ClosestTriangle : btTriangleRaycastCallback {
         using btTriangleRaycastCallback::btTriangleRaycastCallback;
         btScalar reportHit(const btVector3& /*normal*/, btScalar fraction, int /*part*/,
                            int /*index*/) override {
@@ -108,7 +108,7 @@ btScalar castByTriangles(const btVector3& from, const btVector3& to, const btCol
         }
     };
     const btTransform toLocal = transform.inverse();
-    Closest closest(toLocal * from, toLocal * to);
+    ClosestTriangle closest(toLocal * from, toLocal * to);
     btVector3 min = toLocal * from;
     btVector3 max = min;
     min.setMin(toLocal * to);
