@@ -63,7 +63,7 @@ void expectDrawn(const Json& charts, std::size_t number) {
     }
 }
 
-std::set<std::string> namesOf(const Json& charts) {
+std::set<std::string> chartNamesOf(const Json& charts) {
     std::set<std::string> names;
     for (const Json& chart : charts) {
         names.insert(chart["name"].get<std::string>());
@@ -116,7 +116,7 @@ TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
     expectDrawn(pages[0]["withJavaScript"]["charts"], sampleCharts().size());
     expectDrawn(pages[1]["withJavaScript"]["charts"], 2);
     expectDrawn(pages[2]["withJavaScript"]["charts"], sampleCharts().size() + 2);
-    const std::set<std::string> names = namesOf(pages[3]["withJavaScript"]["charts"]);
+    const std::set<std::string> names = chartNamesOf(pages[3]["withJavaScript"]["charts"]);
     expectDrawn(pages[3]["withJavaScript"]["charts"], names.size());
     for (const char* name : {"paper-collision", "paper-visibility", "paper-AI", "paper-radius"}) {
         EXPECT_EQ(names.count(name), 1U) << name;

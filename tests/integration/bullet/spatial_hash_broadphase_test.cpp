@@ -3,6 +3,7 @@
 // What programs rely on in btDbvtBroadphase beyond its pairs and queries.
 
 #include <tests/integration/bullet/boxes.hpp>
+#include <tests/integration/bullet/queries.hpp>
 #include <tests/support/handlers.hpp>
 
 #include <gtest/gtest.h>
@@ -130,12 +131,23 @@ TEST(SpatialHashBroadphase, KnowsTheBoxAroundEverything) {
 }
 
 // From addCollisionObject, say, which checks nothing.
-TEST(SpatialHashBroadphase, ReportsBoxesWithNanOnceCountsThemAndHasNoneAroundEverything) {
+TEST(SpatialHashBroadphase, ReportsBoxesWithNanOnceCountsThemAndFindsThemNowhere) {
     const CaughtMessages messages;
     Boxes boxes;
-    boxes.create(kHere);
+    Client good{0};
+    Client other{1};
+    boxes.create(kHere, 1, -1, &good);
     EXPECT_TRUE(messages.all().empty());
-    btBroadphaseProxy* const bad = boxes.create(kThere);
+    btBroadphaseProxy* const bad = boxes.create(kThere, 1, -1, &other);
+    const Ray ray{{-9, btScalar(0.1), btScalar(0.2)}, {19, btScalar(0.1), btScalar(0.2)}};
+    const auto expectFound = [&](std::size_t count) {
+        CollectBox byBox;
+        boxes.broadphase.aabbTest({-99, -99, -99}, {99, 99, 99}, byBox);
+        EXPECT_EQ(byBox.found.size(), count);
+        CollectRay byRay(ray);
+        boxes.broadphase.rayTest(ray.from, ray.to, byRay);
+        EXPECT_EQ(byRay.found.size(), count);
+    };
     for (int frame = 0; frame < 24; ++frame) {
         Box box = kThere;
         (frame % 6 < 3 ? box.min : box.max)[frame % 3] = std::numeric_limits<btScalar>::quiet_NaN();
@@ -143,7 +155,9 @@ TEST(SpatialHashBroadphase, ReportsBoxesWithNanOnceCountsThemAndHasNoneAroundEve
         Box all;
         boxes.broadphase.getBroadphaseAabb(all.min, all.max);
         EXPECT_EQ(isSame(all, kHere), frame % 4 != 0);
+        expectFound(frame % 4 == 0 ? 2 : 1);
         boxes.check();
+        expectFound(frame % 4 == 0 ? 2 : 1);
         EXPECT_EQ(boxes.broadphase.grid().nanCount(), frame % 4 == 0 ? 0U : 1U);
     }
     ASSERT_EQ(messages.all().size(), 1U);
