@@ -5,10 +5,10 @@
 #
 # Compiles strict_user.cpp, which includes all that is installed and uses every client, as a user of
 # that kind does; our headers are found by -I, so that warnings about them are the user's:
-#   careful     has all warnings made errors, and our assertions
-#   engine      has neither exceptions nor RTTI, C++23 if there is, and Bullet in double precision;
-#               every word of foreign_macros.hpp is a syntax error where our headers use it
-#   desktop     includes foreign_macros.hpp before all else, and has C++26 if there is
+#   careful     has all warnings made errors, and our assertions; includes foreign_macros.hpp before all
+#               else, and has C++26 if there is
+#   engine      has neither exceptions nor RTTI, and Bullet in double precision; every word of
+#               foreign_macros.hpp is a syntax error where our headers use it
 
 cmake_minimum_required(VERSION 3.22)
 set(here ${CMAKE_CURRENT_LIST_DIR})
@@ -64,21 +64,18 @@ list(TRANSFORM words REPLACE "^#define ([A-Za-z_0-9]+(\\([^)]*\\))?).*" "#define
 string(CONCAT poison ${words})
 file(WRITE ${SCRATCH}/poison.hpp "${theirs}\n#include <cstdio>\n${poison}")
 
-find_standard(standard c++20)
 if(USER STREQUAL "careful")
+    find_standard(standard c++26 c++2c c++23 c++2b)
     find_options(
         options -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wold-style-cast
         -Wnull-dereference -Wdouble-promotion -Wuseless-cast -Wnon-virtual-dtor
         -Woverloaded-virtual -Wextra-semi -Wundef -Wcast-align -Wcast-qual -Wfloat-conversion
         -Wimplicit-fallthrough -Wredundant-decls -Wunused)
-    list(APPEND options -Werror -DHASHPHASE_ENABLE_ASSERTS=1)
+    list(APPEND options -Werror -DHASHPHASE_ENABLE_ASSERTS=1 -include ${here}/foreign_macros.hpp)
 elseif(USER STREQUAL "engine")
-    find_standard(standard c++23 c++2b)
+    find_standard(standard c++20)
     find_options(options -fno-exceptions -fno-rtti -fno-threadsafe-statics -funsigned-char -fshort-enums)
     list(APPEND options -DNDEBUG -DBT_USE_DOUBLE_PRECISION -include ${SCRATCH}/poison.hpp)
-elseif(USER STREQUAL "desktop")
-    find_standard(standard c++26 c++2c c++23 c++2b)
-    set(options -include ${here}/foreign_macros.hpp)
 else()
     message(FATAL_ERROR "There is no user \"${USER}\".")
 endif()

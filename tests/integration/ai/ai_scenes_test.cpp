@@ -347,7 +347,7 @@ TYPED_TEST_SUITE(AgentsInScenes, Scalars);
 TYPED_TEST(AgentsInScenes, AreToldWhatBruteForceTells) {
     std::map<std::string, std::size_t> compared;
     for (const auto& [cellSize, frames] :
-         {std::pair(0.0, 60), std::pair(1e-3, 12), std::pair(1.5, 12), std::pair(1e4, 12)}) {
+         {std::pair(0.0, 30), std::pair(1e-3, 8), std::pair(1.5, 8), std::pair(1e4, 8)}) {
         GridConfig config;
         config.cellSize = cellSize;
         std::unique_ptr<Agents<TypeParam>> agents;
