@@ -22,6 +22,8 @@ namespace hashphase::demos {
 /// Who runs a case, how much of it, and what comes out.
 template <class Scalar>
 struct CaseRun : CaseTally {
+    using Number = Scalar;
+
     MakeSubject<Scalar> make = makeGridSubject<Scalar>;
     std::string_view name = "grid";
     bool isOurs = true;
@@ -31,11 +33,15 @@ struct CaseRun : CaseTally {
     /// What rays of ours find by rayTest(), where Bullet's btRayAabb2() decides.
     CaseTally throughBullet;
 
-    template <class Number>
-    [[nodiscard]] Number quickOrFull(Number quick, Number full) const {
+    template <class Amount>
+    [[nodiscard]] Amount quickOrFull(Amount quick, Amount full) const {
         return isQuick ? quick : full;
     }
 };
+
+/// The precision of a run of which a case knows the type alone: decltype(run).
+template <class Run>
+using ScalarOf = typename std::remove_reference_t<Run>::Number;
 
 struct HardCase {
     const char* id;        // "H16"

@@ -11,7 +11,8 @@ namespace {
 
 // --- No extent ------------------------------------------------------------------------------------
 
-constexpr auto pointsAndPlates = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto pointsAndPlates = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes;
     const auto add = [&](const Point& low, const Point& high) { boxes.emplace_back(low, high); };
@@ -39,7 +40,8 @@ constexpr auto pointsAndPlates = []<class Scalar>(CaseRun<Scalar>& run) {
     }
 };
 
-constexpr auto signsOfZero = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto signsOfZero = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes;
     for (int signs = 0; signs < 64; ++signs) {
@@ -119,7 +121,8 @@ void judgeBorders(CaseRun<Scalar>& run, const Boxes<Scalar>& boxes, Scalar cell)
     run.compare(scene.reported(), exact);
 }
 
-constexpr auto multiplesOfTheCell = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto multiplesOfTheCell = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     // Only ours has cells. The others are asked about some of the same boxes.
     const int step = run.isOurs ? run.quickOrFull(20, 1) : run.quickOrFull(250, 125);
     const int borders = run.isOurs ? 1000 : run.quickOrFull(100, 200);
@@ -139,7 +142,8 @@ constexpr auto multiplesOfTheCell = []<class Scalar>(CaseRun<Scalar>& run) {
              " cell sizes.");
 };
 
-constexpr auto cornersOfCells = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto cornersOfCells = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes;
     const Scalar cell = 0.7F;

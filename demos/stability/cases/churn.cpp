@@ -14,7 +14,8 @@ namespace {
 
 // --- Once -----------------------------------------------------------------------------------------
 
-constexpr auto duplicates = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto duplicates = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     const GridConfig config{.cellSize = 1, .levelRatio = 4};
     Boxes<Scalar> boxes;
@@ -183,7 +184,8 @@ void approachAView(CaseRun<Scalar>& run, Scalar step, int frames) {
     run.expect(areAllSeen && visible > 0, "what comes into view by a hair is seen");
 }
 
-constexpr auto smallMoves = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto smallMoves = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     const int frames = run.quickOrFull(1000, 10'000);
     moveByTheMargin(run, frames);
     walkByTheMargin(run, frames);
@@ -259,7 +261,8 @@ Aabb<Scalar> anyBox(Random& random) {
     return cubeAt(at, between<Scalar>(random, 0.1F, 1.5F));
 }
 
-constexpr auto randomChanges = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto randomChanges = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     constexpr std::uint32_t kObjects = 40;
     const int changes = run.quickOrFull(20'000, 1'000'000) / (run.isOurs ? 1 : 50);
     Random random(run.seed);

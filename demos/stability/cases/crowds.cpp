@@ -136,7 +136,8 @@ void judgeQueriesInACrowd(CaseRun<Scalar>& run) {
                "a crowd is searched along an axis");
 }
 
-constexpr auto oneCell = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto oneCell = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     const std::size_t count = run.template quickOrFull<std::size_t>(20'000, 200'000);
     const Boxes<Scalar> boxes = scatteredCubes<Scalar>(count, 0.98F, 0.008F, 0.008F, run.seed);
     PairScene<Scalar> scene(run, boxes, {.cellSize = 1});
@@ -182,7 +183,7 @@ double bytesPerPair(CaseRun<Scalar>& run, std::size_t count) {
     return static_cast<double>(bytes) / pairs;
 }
 
-constexpr auto allTheSame = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto allTheSame = [](auto& run) {
     const std::size_t count = run.template quickOrFull<std::size_t>(600, 2000);
     const double many = bytesPerPair(run, count);
     if (run.isOurs) {
@@ -268,7 +269,8 @@ void expectMostIsRefused(CaseRun<Scalar>& run) {
                "the grid is as it was");
 }
 
-constexpr auto beyond32Bits = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto beyond32Bits = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     if (kCanRunOutOfMemory) {
         constexpr std::size_t kCount = 8000;  // 32 million pairs
         const Boxes<Scalar> together(kCount, cubeAt<Scalar>({0, 0, 0}, 1));

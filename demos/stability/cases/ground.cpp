@@ -112,7 +112,8 @@ void judgeGround(CaseRun<Scalar>& run, const std::vector<Probe<Scalar>>& probes,
     }
 }
 
-constexpr auto ground = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto ground = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     const bool isBulletsWay = run.name == "dbvt";
     if (!run.isOurs && !isBulletsWay) {

@@ -49,7 +49,8 @@ bool judgeFarAlong(CaseRun<Scalar>& run, Scalar length, const Vector3<Scalar>& s
     return scene.isOurs();
 }
 
-constexpr auto manyCells = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto manyCells = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     // A ray errs to the side of a hit by what its coordinates are rounded by: metres, there.
     judgeFarAlong<Scalar>(run, 3.4e7F, {1, 0.5F, -0.25F}, 1024);
 };
@@ -89,7 +90,8 @@ void judgeSupercover(CaseRun<Scalar>& run, const Vector3<double>& from, const Ve
     scene.judge(from.cast<Scalar>(), to.cast<Scalar>(), Lattice(0x1p-13), doubt);
 }
 
-constexpr auto hundredThousandCells = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto hundredThousandCells = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     if (!judgeFarAlong<Scalar>(run, 1e5F, {1, 0.37F, 0.61F}, 12)) {
         return;
     }
@@ -151,7 +153,8 @@ void judgeScaledUp(CaseRun<Scalar>& run, double scale) {
     }
 }
 
-constexpr auto tooLongForSquares = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto tooLongForSquares = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     for (const Scalar length : {1e18F, 1e19F, 1e25F, 1e38F}) {
         Boxes<Scalar> boxes = latticeBoxes<Scalar>(200, 20, run.seed);

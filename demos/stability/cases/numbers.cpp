@@ -25,7 +25,8 @@ Aabb<Scalar> along(int axis, Scalar low, Scalar high) {
     return box;
 }
 
-constexpr auto hugeCoordinates = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto hugeCoordinates = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     const CountedMessages messages;
     Boxes<Scalar> boxes = ordinaryBoxes(run);
@@ -102,7 +103,8 @@ public:
     PairScene<Scalar> scene;
 };
 
-constexpr auto endlessPlane = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto endlessPlane = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     const std::size_t count = run.template quickOrFull<std::size_t>(500, 2000);
     PlaneWorld<Scalar> with(run, count, true);
     PlaneWorld<Scalar> without(run, count, false);
@@ -152,7 +154,8 @@ Aabb<Scalar> withNan(Aabb<Scalar> box, int field) {
     return box;
 }
 
-constexpr auto nanInOneField = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto nanInOneField = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     for (int field = 0; field < 6; ++field) {
         const CountedMessages messages;
         Boxes<Scalar> boxes = ordinaryBoxes(run);
@@ -177,7 +180,8 @@ constexpr auto nanInOneField = []<class Scalar>(CaseRun<Scalar>& run) {
 
 // --- Boxes inside out -----------------------------------------------------------------------------
 
-constexpr auto invertedBoxes = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto invertedBoxes = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes = ordinaryBoxes(run);
     const Scalar most = std::numeric_limits<Scalar>::max();
@@ -238,7 +242,8 @@ void expectCellsBeyond32Bits(CaseRun<Scalar>& run) {
                "there is a last cell");
 }
 
-constexpr auto cellNumbersThatOverflow = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto cellNumbersThatOverflow = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     const auto cornerAt = [](int corner, Scalar far) {
         return Point((corner & 1) != 0 ? far : -far, (corner & 2) != 0 ? far : -far,

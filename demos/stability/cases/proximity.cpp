@@ -43,7 +43,8 @@ void judgeBall(CaseRun<Scalar>& run, PairScene<Scalar>& scene, const Vector3<Sca
     run.compare(found.sorted(), exact);
 }
 
-constexpr auto anyRadius = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto anyRadius = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     Random random(run.seed);
     Boxes<Scalar> boxes;
@@ -107,7 +108,8 @@ void judgeStrays(CaseRun<Scalar>& run) {
     }
 }
 
-constexpr auto nothingThere = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto nothingThere = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     const Aabb<Scalar> world = cubeAt<Scalar>({0, 0, 0}, 2);
     for (const std::size_t count : {0U, 1U, 40U}) {
         Boxes<Scalar> boxes;

@@ -47,7 +47,8 @@ void judgeSignsOfZero(CaseRun<Scalar>& run) {
     }
 }
 
-constexpr auto alongAxes = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto alongAxes = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     Boxes<Scalar> boxes = latticeBoxes<Scalar>(399, 24, run.seed);
     boxes.insert(boxes.begin(), {Point::Zero(), Point::Ones()});
@@ -120,7 +121,8 @@ void judgeGrazingBoxes(CaseRun<Scalar>& run) {
     run.expect(extra < kRays / 2, "of what a box misses by a hair, it meets some");
 }
 
-constexpr auto alongBorders = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto alongBorders = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     constexpr int kSide = 8;
     RayScene<Scalar> scene(run, block<Scalar>(kSide), {.cellSize = 1});
@@ -160,7 +162,8 @@ constexpr auto alongBorders = []<class Scalar>(CaseRun<Scalar>& run) {
     }
 };
 
-constexpr auto noLength = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto noLength = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     RayScene<Scalar> scene(run, latticeBoxes<Scalar>(200, 10, run.seed));
     const Aabb<Scalar> fatness = makeBox<Scalar>(-0.25, -0.25, -0.25, 0.25, 0.25, 0.25);
@@ -220,7 +223,8 @@ void judgeWorseRays(CaseRun<Scalar>& run, RayScene<Scalar>& scene, const Vector3
     }
 }
 
-constexpr auto noRay = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto noRay = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     const CountedMessages messages;
     RayScene<Scalar> scene(run, latticeBoxes<Scalar>(2000, 40, run.seed));

@@ -138,7 +138,8 @@ std::uint64_t digestOfAll(std::size_t count, std::uint64_t seed, ParallelFor par
     return digest.value();
 }
 
-constexpr auto allInstructions = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto allInstructions = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     if (!run.isOurs) {
         return;
     }
@@ -185,7 +186,8 @@ Keys pairsInOrder(CaseRun<Scalar>& run, const Boxes<Scalar>& boxes, const Object
     return pairs;
 }
 
-constexpr auto anyOrder = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto anyOrder = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     const Boxes<Scalar> boxes = variedBoxes<Scalar>(1000, run.seed);
     Objects order(boxes.size());
     std::iota(order.begin(), order.end(), 0U);

@@ -123,7 +123,8 @@ void judgeModesOfDenormals(CaseRun<Scalar>& run) {
                "not flushed, some do");
 }
 
-constexpr auto denormalNumbers = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto denormalNumbers = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     for (const bool flushes : {false, true}) {
         // What is compared, and by whom, goes by the same rules.
         const FlushToZero flush(flushes);
@@ -197,7 +198,8 @@ void judgeLifeFarOut(CaseRun<Scalar>& run, double far) {
     }
 }
 
-constexpr auto unitBoxesFarOut = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto unitBoxesFarOut = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     std::uint64_t beyondTruth = 0;
     for (const double far : {0x1p24, 1e7, 5e7, 1e8, 1e9}) {
         Boxes<double> boxes;
@@ -290,7 +292,8 @@ void judgeShiftedLife(CaseRun<Scalar>& run, double unit, const Vector3<double>& 
     run.expect(tests[1] <= tests[0] + tests[0] / 10 + 1000, "it costs as much there as here");
 }
 
-constexpr auto shiftedScene = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto shiftedScene = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     // Multiples of 1/8 m stay themselves at 2^20 m, and multiples of 128 m at 2^30 m.
     const auto judgeShift = [&](double unit, double shift) {
         const auto boxes = [&](double by) {

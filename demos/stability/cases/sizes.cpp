@@ -101,7 +101,8 @@ void judgeMixtures(CaseRun<Scalar>& run) {
     }
 }
 
-constexpr auto allSizes = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto allSizes = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     Random random(run.seed);
     const int count = run.quickOrFull(1000, 4000);
     Boxes<Scalar> mixed;
@@ -128,7 +129,8 @@ constexpr auto allSizes = []<class Scalar>(CaseRun<Scalar>& run) {
     many.judge();
 };
 
-constexpr auto oneLargeObject = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto oneLargeObject = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     constexpr std::size_t kCount = 4000;
     Boxes<Scalar> boxes = scatteredCubes<Scalar>(kCount, 60, 0.4F, 0.8F, run.seed);
     PairScene<Scalar> without(run, boxes, {.cellSize = 1});
@@ -287,7 +289,8 @@ void judgeLongRegions(CaseRun<Scalar>& run) {
     }
 }
 
-constexpr auto cellsThatCollide = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto cellsThatCollide = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<float>;
     const int side = run.quickOrFull(100, 400);
     std::vector<Point> equalRows;

@@ -185,7 +185,8 @@ void judgeRoundedCells(CaseRun<Scalar>& run) {
     }
 }
 
-constexpr auto millionCells = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto millionCells = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     const auto frame = flyingFrame<Scalar>(run.seed, 2000, 20, 40, 1e6F, 0.125F);
     judgeFrame(run, frame, 0.125);
@@ -237,7 +238,8 @@ void judgeMeetings(CaseRun<Scalar>& run, Scalar face,
     }
 }
 
-constexpr auto noMotion = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto noMotion = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     const Boxes<Scalar> boxes = scatteredCubes<Scalar>(150, 6, 0.5F, 1.5F, run.seed);
     const Keys exact = touchingPairs(boxes);
     for (const Scalar speed : {0.0F, -0.0F, 1e-12F, 1e-30F, 1e-40F}) {
@@ -299,7 +301,8 @@ SweptFrame<Scalar> bulletsAtWalls(int lanes, float thickness, Random& random) {
     return frame;
 }
 
-constexpr auto thinWalls = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto thinWalls = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     Random random(run.seed);
     constexpr int kLanes = 2000;
     const int phases = run.isOurs ? run.quickOrFull(10'000, 1'000'000) : 10'000;
@@ -346,7 +349,8 @@ void judgeMoments(CaseRun<Scalar>& run) {
     judgeFrame(run, frame, exact);
 }
 
-constexpr auto grazing = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto grazing = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     for (const int apart : {-1, 0, 1}) {
         // Along an axis, past a face; 1 ulp of the coordinates at 1024 m.
@@ -382,7 +386,8 @@ void judgeInfiniteBoxes(CaseRun<Scalar>& run) {
           {Point(0, 1e37F, 0), Point(1, 2e38F, kFar)});
 }
 
-constexpr auto crossing = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto crossing = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     SweptFrame<Scalar> frame;
     const auto add = [&frame](const Vector3<Scalar>& low, const Vector3<Scalar>& way) {
         frame.objects.push_back({{low, low + Vector3<Scalar>::Ones()}, way});

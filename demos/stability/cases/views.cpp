@@ -103,7 +103,8 @@ Boxes<Scalar> town(std::uint64_t seed) {
     return boxes;
 }
 
-constexpr auto strangeViews = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto strangeViews = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     PairScene<Scalar> scene(run, town<Scalar>(run.seed));
     Random random(run.seed);
     using Corner = typename ScreenRectangle<Scalar>::VectorType;
@@ -136,7 +137,8 @@ constexpr auto strangeViews = []<class Scalar>(CaseRun<Scalar>& run) {
 
 // --- Dragged rectangles ---------------------------------------------------------------------------
 
-constexpr auto strangeRectangles = []<class Scalar>(CaseRun<Scalar>& run) {
+constexpr auto strangeRectangles = [](auto& run) {
+    using Scalar = ScalarOf<decltype(run)>;
     PairScene<Scalar> scene(run, town<Scalar>(run.seed));
     if (scene.grid() == nullptr) {
         return;

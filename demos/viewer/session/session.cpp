@@ -134,7 +134,10 @@ void Session::see() {
 }
 
 const Culler<float>& Session::culler() const {
-    return usesOwnCuller ? ownCuller : stage->observers().culler();
+    if (usesOwnCuller) {
+        return ownCuller;
+    }
+    return stage->observers().culler();
 }
 
 // Whether the scene has moved or not.
