@@ -64,8 +64,7 @@ function(hashphase_precompile_headers target)
 endfunction()
 
 # hashphase_compile_together(<target>): in a quick build, compiles twelve sources at a time as one, because
-# most of what they take are the same headers and templates: in the time of three. So they share their
-# names.
+# most of what they take are the same headers and templates. So they share their names.
 function(hashphase_compile_together target)
     if(HASHPHASE_QUICK_BUILD)
         set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
