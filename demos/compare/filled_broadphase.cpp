@@ -2,24 +2,11 @@
 #include <demos/compare/filled_broadphase.hpp>
 
 #include <demos/compare/trial.hpp>
+#include <demos/scenes/destroy_proxies.hpp>
 
 #include <numeric>
 
 namespace hashphase::demos {
-namespace {
-
-// Bullet's cache searches all its pairs for those of a proxy that is destroyed; emptied beforehand,
-// it has none to search.
-void emptyBulletsCache(btBroadphaseInterface& broadphase) {
-    auto* cache = dynamic_cast<btHashedOverlappingPairCache*>(broadphase.getOverlappingPairCache());
-    while (cache != nullptr && cache->getNumOverlappingPairs() > 0) {
-        const btBroadphasePair& last =
-            cache->getOverlappingPairArray()[cache->getNumOverlappingPairs() - 1];
-        cache->removeOverlappingPair(last.m_pProxy0, last.m_pProxy1, nullptr);
-    }
-}
-
-}  // namespace
 
 std::optional<float> cellSizeOf(const btBroadphaseInterface& broadphase) {
     const auto* ours = dynamic_cast<const SpatialHashBroadphase*>(&broadphase);
@@ -43,14 +30,8 @@ FilledBroadphase::FilledBroadphase(const BroadphaseKind& kind, const BroadphaseN
 }
 
 FilledBroadphase::~FilledBroadphase() {
-    if (freesProxies_) {
-        return;
-    }
-    emptyBulletsCache(*broadphase_);
-    for (btBroadphaseProxy* proxy : proxies_) {
-        if (proxy != nullptr) {
-            broadphase_->destroyProxy(proxy, nullptr);
-        }
+    if (!freesProxies_) {
+        destroyProxies(*broadphase_, proxies_);
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/stability/bullet_subject.hpp>
 
+#include <demos/scenes/destroy_proxies.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
@@ -17,17 +18,6 @@ namespace {
 
 const SpatialHashBroadphase* hashOf(const btBroadphaseInterface& broadphase) {
     return dynamic_cast<const SpatialHashBroadphase*>(&broadphase);
-}
-
-// Bullet's cache searches all its pairs for those of a proxy that is destroyed; emptied beforehand,
-// it has none to search.
-void emptyBulletsCache(btBroadphaseInterface& broadphase) {
-    auto* cache = dynamic_cast<btHashedOverlappingPairCache*>(broadphase.getOverlappingPairCache());
-    while (cache != nullptr && cache->getNumOverlappingPairs() > 0) {
-        const btBroadphasePair& last =
-            cache->getOverlappingPairArray()[cache->getNumOverlappingPairs() - 1];
-        cache->removeOverlappingPair(last.m_pProxy0, last.m_pProxy1, nullptr);
-    }
 }
 
 /// A callback of any query: the objects of what is found.
@@ -111,14 +101,8 @@ BulletSubject::BulletSubject(std::unique_ptr<btBroadphaseInterface> broadphase, 
 }
 
 BulletSubject::~BulletSubject() {
-    if (freesProxies_) {
-        return;
-    }
-    emptyBulletsCache(*broadphase_);
-    for (btBroadphaseProxy* proxy : proxies_) {
-        if (proxy != nullptr) {
-            broadphase_->destroyProxy(proxy, nullptr);
-        }
+    if (!freesProxies_) {
+        destroyProxies(*broadphase_, proxies_);
     }
 }
 

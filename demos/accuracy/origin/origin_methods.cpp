@@ -3,6 +3,7 @@
 
 #include <broadphase/pairs.hpp>
 #include <demos/accuracy/baselines/dbvt_boxes.hpp>
+#include <demos/scenes/list_pairs.hpp>
 #include <integration/bullet/conversions.hpp>
 
 #include <cmath>
@@ -107,13 +108,7 @@ OriginWorld gridWorld() {
                 }
                 filed->pairs.update([](ProxyId, ProxyId) { return true; });
             },
-            [=](std::vector<PairKey>& pairs) {
-                std::vector<ProxyPair> all;
-                filed->pairs.collect(all);
-                for (const ProxyPair& pair : all) {
-                    pairs.push_back(pairKey(pair.first.index, pair.second.index));
-                }
-            },
+            [=](std::vector<PairKey>& pairs) { listPairs(filed->pairs, pairs); },
             [=](const WorldRay& ray, std::vector<std::uint32_t>& boxes) {
                 std::vector<ProxyId> hits;
                 CollectAll collector(hits);

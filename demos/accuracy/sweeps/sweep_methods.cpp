@@ -5,6 +5,7 @@
 #include <broadphase/sweeps.hpp>
 #include <demos/accuracy/baselines/hashed_cells.hpp>
 #include <demos/compare/filled_broadphase.hpp>
+#include <demos/scenes/list_pairs.hpp>
 #include <integration/bullet/conversions.hpp>
 
 #include <algorithm>
@@ -41,11 +42,7 @@ SweepFinder gridFinder(Sweep sweep, const SweptFrame& first) {
             filed->pairs.update([](ProxyId, ProxyId) { return true; });
         },
         [=](std::vector<PairKey>& pairs) {
-            std::vector<ProxyPair> all;
-            filed->pairs.collect(all);
-            for (const ProxyPair& pair : all) {
-                pairs.push_back(pairKey(pair.first.index, pair.second.index));
-            }
+            listPairs(filed->pairs, pairs);
             const SweepCost& swept = filed->sweeps.lastCost();
             return SweepWork{swept.segments + swept.rays, swept.boxesTested + swept.contactsTested +
                                                               filed->pairs.lastCost().boxesTested};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/stage/recording_stage.hpp>
 
+#include <demos/scenes/list_pairs.hpp>
 #include <demos/scenes/result_hash.hpp>
 
 namespace hashphase::demos {
@@ -108,11 +109,7 @@ void RecordingStage::listPairs(std::vector<PairKey>& pairs) const {
     if (rival_ != nullptr) {
         pairs = rival_->pairs();
     } else if (pairs_ != nullptr) {
-        std::vector<ProxyPair> found;
-        pairs_->collect(found);
-        for (const ProxyPair& pair : found) {
-            pairs.push_back(pairKey(pair.first.index, pair.second.index));
-        }
+        demos::listPairs(*pairs_, pairs);
     }
 }
 
