@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <vector>
 
 namespace hashphase::demos {
@@ -44,14 +43,18 @@ std::string plainSpelling(std::string_view word) {
     return plain;
 }
 
-template <class Number>
-std::optional<Number> numberOf(std::string_view word) {
-    const std::string plain = plainSpelling(word);
-    const char* const end = plain.data() + plain.size();
-    Number number = 0;
-    const bool isNumber =
-        std::from_chars(plain.data(), end, number) == std::from_chars_result{end, std::errc()};
-    return isNumber && std::isfinite(number) ? std::optional(number) : std::nullopt;
+// The power of ten behind 'e'; nothing for what is none.
+std::optional<int> exponentOf(std::string_view text) {
+    if (text.starts_with('+') && !text.starts_with("+-")) {
+        text.remove_prefix(1);
+    }
+    int exponent = 0;
+    const char* const end = text.data() + text.size();
+    if (std::from_chars(text.data(), end, exponent) != std::from_chars_result{end, std::errc()} ||
+        std::abs(exponent) > 10'000) {
+        return std::nullopt;
+    }
+    return exponent;
 }
 
 // How many letters must be inserted, removed, replaced, or swapped with their neighbour to turn one word into
@@ -178,16 +181,47 @@ std::string unknownNameSentence(std::string_view whatItIs, std::string_view name
 }
 
 std::optional<std::uint64_t> wholeNumber(std::string_view word) {
-    static_assert(std::numeric_limits<long double>::digits >= 64);  // all whole numbers, exactly
-    const std::optional<long double> number = numberOf<long double>(word);
-    constexpr auto kMost = static_cast<long double>(std::numeric_limits<std::uint64_t>::max());
-    return number && !std::signbit(*number) && *number <= kMost && std::trunc(*number) == *number
-               ? std::optional(static_cast<std::uint64_t>(*number))
-               : std::nullopt;
+    const std::string plain = plainSpelling(word);
+    const std::size_t e = std::min(plain.find_first_of("eE"), plain.size());
+    std::optional<int> exponent = 0;
+    if (e < plain.size()) {
+        exponent = exponentOf(std::string_view(plain).substr(e + 1));
+    }
+    std::string digits = plain.substr(0, e);
+    if (const std::size_t point = digits.find('.'); exponent && point < digits.size()) {
+        *exponent -= static_cast<int>(digits.size() - point - 1);
+        digits.erase(point, 1);
+    }
+    if (!exponent || digits.empty() ||
+        digits.find_first_not_of("0123456789") != std::string::npos) {
+        return std::nullopt;
+    }
+    digits.erase(0, digits.find_first_not_of('0'));
+    for (; *exponent < 0 && digits.ends_with('0'); ++*exponent) {
+        digits.pop_back();
+    }
+    if (digits.empty()) {
+        return 0;
+    }
+    constexpr std::size_t kMostDigits = 20;  // of 2^64 - 1
+    if (*exponent < 0 || digits.size() + static_cast<std::size_t>(*exponent) > kMostDigits) {
+        return std::nullopt;
+    }
+    digits.append(static_cast<std::size_t>(*exponent), '0');
+    std::uint64_t number = 0;
+    const char* const end = digits.data() + digits.size();
+    const bool fits =
+        std::from_chars(digits.data(), end, number) == std::from_chars_result{end, std::errc()};
+    return fits ? std::optional(number) : std::nullopt;
 }
 
 std::optional<double> finiteNumber(std::string_view word) {
-    return numberOf<double>(word);
+    const std::string plain = plainSpelling(word);
+    const char* const end = plain.data() + plain.size();
+    double number = 0;
+    const bool isNumber =
+        std::from_chars(plain.data(), end, number) == std::from_chars_result{end, std::errc()};
+    return isNumber && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
 std::string_view withoutBlanks(std::string_view word) {

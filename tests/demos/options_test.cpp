@@ -60,7 +60,8 @@ TEST(NumberWords, AreNoneWhereTheyCouldMeanSomethingElse) {
     std::istringstream words(
         "| |-1|0x10|1.5|15e-1|1,00|1,0000|,100|100,|1,000_000|1 "
         "000|1e|e5|1e5.0|--1|+-1|++1|many|1k|"
-        ".|1.2.3|nan|inf|18446744073709551616|1e20|1e99|1e99999999999|1e+-5");
+        ".|1.2.3|nan|inf|18446744073709551616|1e20|1e99|1e99999999999|1e+-5|"
+        "1.00000000000000000000001|18446744073709551615.01");
     for (std::string word; std::getline(words, word, '|');) {
         EXPECT_EQ(wholeNumber(word), std::nullopt) << word;
     }
