@@ -194,5 +194,33 @@ TYPED_TEST(Quantise, IsTheFloorWhereNothingIsRounded) {
     EXPECT_EQ(quantise(-TypeParam(0), TypeParam(0), TypeParam(1)), 0);
 }
 
+// Borders k * cell as rounded: whichever side they fall on, the number below is never in a higher cell, and
+// none is more than one cell off.
+TYPED_TEST(Quantise, PutsTheNeighboursOfABorderIntoTheSameOrNeighbouringCells) {
+    for (int tenths = 1; tenths <= 1000; ++tenths) {
+        const double size = 0.1 * tenths;
+        const auto inverse = static_cast<TypeParam>(1 / size);
+        for (int k = -999; k <= 999; k += 3) {
+            const auto border = static_cast<TypeParam>(k) * static_cast<TypeParam>(size);
+            const std::int32_t below = quantise(this->below(border), TypeParam(0), inverse);
+            const std::int32_t at = quantise(border, TypeParam(0), inverse);
+            const std::int32_t above = quantise(this->above(border), TypeParam(0), inverse);
+            ASSERT_LE(below, at);
+            ASSERT_LE(at, above);
+            ASSERT_GE(below, k - 1);
+            ASSERT_LE(above, k);
+        }
+    }
+}
+
+TYPED_TEST(Quantise, ClampsWhatIsFarOutsideBeforeTheConversion) {
+    for (const TypeParam far : {TypeParam(3e9), TypeParam(1e18), TestFixture::Limits::max(),
+                                TestFixture::Limits::infinity()}) {
+        EXPECT_EQ(quantise(far, TypeParam(0), TypeParam(1)), kCellLimit);
+        EXPECT_EQ(quantise(-far, TypeParam(0), TypeParam(1)), -kCellLimit);
+    }
+    EXPECT_EQ(quantise(TestFixture::Limits::quiet_NaN(), TypeParam(0), TypeParam(1)), kCellLimit);
+}
+
 }  // namespace
 }  // namespace hashphase::detail

@@ -64,12 +64,12 @@ constexpr std::array<double, 4> kCellSizes{0, 1.5, 1e-3, 1e4};
 
 TYPED_TEST(PairsInScripts, EqualBruteForceInEveryScene) {
     for (const double cellSize : kCellSizes) {
-        this->playAll({.cellSize = cellSize}, 0x5eed0001, {}, 56, this->updateAndCheck);
+        this->playAll({.cellSize = cellSize}, 0x5eed0001, {}, 80, this->updateAndCheck);
     }
 }
 
 TYPED_TEST(PairsInScripts, EqualBruteForceWhenTheFilterRefusesAndChangesItsMind) {
-    this->playAll({}, 0x5eed0002, {.recolour = 0.02}, 80, this->updateAndCheck);
+    this->playAll({}, 0x5eed0002, {.recolour = 0.02}, 120, this->updateAndCheck);
 }
 
 TYPED_TEST(PairsInScripts, EqualBruteForceWhereEverythingComesToRestAndWakesAgain) {

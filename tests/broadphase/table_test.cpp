@@ -140,7 +140,7 @@ TYPED_TEST(TableTest, CrowdsInHashedCellsAreFoundWhole) {
     }
     this->filled_.build(std::move(boxes), fixedLevels(100, 4));
     EXPECT_GT(this->countIn(1), 500U) << "hashed";
-    this->filled_.expectEveryPairOnce();
+    this->filled_.expectEveryPairOnce(1500. / 8, 1500. / 4);
 }
 
 // --- Cost and cell sizes -------------------------------------------------------------------------
