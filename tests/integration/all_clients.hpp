@@ -67,7 +67,24 @@ struct AllClients {
                picked.size() + selected.size() + onMap.size() + entered.size() + left.size();
     }
 
-    // What was found.
+    /// Above the first viewer.
+    [[nodiscard]] Camera<Scalar> camera() const {
+        const Vector3<double> eye =
+            viewers[0].eye.template cast<double>() + Vector3<double>(0, 20, 0);
+        return {cameraMatrix<Scalar>({}, eye, eye + Vector3<double>(1, -0.3, 0.2)),
+                DepthRange::zeroToOne,
+                {0, 0, 800, 500}};
+    }
+    /// The agents of `neighbourCounts`.
+    [[nodiscard]] const RadiusSearch<Scalar>& agents() const { return search_; }
+
+    static constexpr Scalar kRadius = 10;  // within which agents have neighbours [m]
+    static constexpr std::size_t kNearest = 9;
+    inline static const Pixel kPointer{400, 250};
+    inline static const Pixel kDragFrom{300, 400};
+    inline static const Pixel kDragTo{100, 100};
+
+    // What was found; of several viewers, of one after the other.
     std::vector<ProxyId> within;
     std::vector<ProxyId> estimated;
     std::vector<KeyedProxy<Scalar>> nearest;
@@ -88,13 +105,20 @@ struct AllClients {
     Accept blocks;
 
 private:
-    static constexpr Scalar kRadius = 10;  // within which agents have neighbours [m]
-
     void askByAgents(const Grid<Scalar>& grid) {
+        within.clear();
+        estimated.clear();
+        nearest.clear();
+        const auto append = [](const auto& found, auto& all) {
+            all.insert(all.end(), found.begin(), found.end());
+        };
         for (const Viewer<Scalar>& viewer : viewers) {
-            findWithin(grid, viewer.eye, kRadius, within, accepts);
-            estimateWithin(grid, viewer.eye, kRadius, estimated, accepts);
-            findNearest(grid, viewer.eye, 9, 1000, nearest, accepts);
+            findWithin(grid, viewer.eye, kRadius, found_, accepts);
+            append(found_, within);
+            estimateWithin(grid, viewer.eye, kRadius, found_, accepts);
+            append(found_, estimated);
+            findNearest(grid, viewer.eye, kNearest, 1000, keyed_, accepts);
+            append(keyed_, nearest);
         }
         sight_.look(grid, viewers, accepts, blocks);
         seen.clear();
@@ -111,16 +135,12 @@ private:
     }
 
     void askByCamera(const Grid<Scalar>& grid) {
-        const Vector3<double> eye =
-            viewers[0].eye.template cast<double>() + Vector3<double>(0, 20, 0);
-        const Camera<Scalar> camera(
-            cameraMatrix<Scalar>({}, eye, eye + Vector3<double>(1, -0.3, 0.2)),
-            DepthRange::zeroToOne, {0, 0, 800, 500});
+        const Camera<Scalar> camera = this->camera();
         culler_.look(grid, frustumRegion<Scalar>(camera.viewProjection(), camera.depthRange()));
         visible.clear();
         culler_.forEach([this](std::uint32_t index) { visible.push_back(index); });
 
-        const RayRegion<Scalar> ray = camera.rayThrough({400, 250});
+        const RayRegion<Scalar> ray = camera.rayThrough(kPointer);
         picked.clear();
         const auto append = [this] {
             for (const Picked<Scalar>& each : all_) {
@@ -135,10 +155,10 @@ private:
         append();
         picked.push_back(pickNearest(grid, ray, accepts).id);
 
-        select(grid, camera, {300, 400}, {100, 100}, selected);
+        select(grid, camera, kDragFrom, kDragTo, selected);
         CollectAll collector(onMap);
         onMap.clear();
-        grid.visit(dragFootprint(camera, {300, 400}, {100, 100}, {-5, 5}).region(), collector);
+        grid.visit(dragFootprint(camera, kDragFrom, kDragTo, {-5, 5}).region(), collector);
         std::sort(onMap.begin(), onMap.end());
     }
 
@@ -148,6 +168,8 @@ private:
     RarestColour<Scalar> rarest_;
     Culler<Scalar> culler_;
     std::vector<Picked<Scalar>> all_;
+    std::vector<ProxyId> found_;
+    std::vector<KeyedProxy<Scalar>> keyed_;
 };
 
 }  // namespace hashphase::test

@@ -128,7 +128,7 @@ TYPED_TEST(DragSelection, OfNoAreaIsWhatLiesUnderThePoint) {
     EXPECT_GT(found, 1000U);
 }
 
-/// Over a plain with bodies on the ground and in the air, looking level: the horizon is in the middle.
+/// Looking level: the horizon is in the middle.
 template <class Scalar>
 Camera<Scalar> levelView() {
     CameraLens lens;
