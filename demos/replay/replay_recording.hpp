@@ -111,8 +111,6 @@ private:
     std::vector<WrongPairs> wrong_;       // of each broadphase
 };
 
-struct Page;
-
 /// Adds the tab "Replay" to the page, unless no frame was recorded. `framesRun` is how many frames the
 /// run had, the recorded ones included.
 void addReplayTab(const ReplayRecording& recording, std::size_t framesRun, Page& page);

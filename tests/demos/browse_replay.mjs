@@ -253,6 +253,7 @@ async function checkWrongPair({ tab, evaluate }, { frame, objects: [a, b] }) {
     assert.equal(seen.frame, frame);
     assert(seen.words.includes(`Objects ${a} and ${b} overlap`), seen.words);
     assert(seen.inPicture);
+    assert.equal(seen.redAtMarks.length, 2);
     for (const red of seen.redAtMarks) {
         assert(red > 20, "pixels in the colour of what is missing");
     }
