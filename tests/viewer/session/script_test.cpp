@@ -112,6 +112,8 @@ public:
             return;
         }
         EXPECT_EQ(session_->failureCount, 0);
+        EXPECT_EQ(session_->takeMessages(), std::exchange(said_, {}));
+        EXPECT_EQ(fault_, "none");
         if (!canReplay_) {
             return;
         }

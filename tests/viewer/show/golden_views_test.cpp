@@ -93,6 +93,14 @@ INSTANTIATE_TEST_SUITE_P(
             "discrete_misses_in_the_dark", kStorm, {"theme dark", "camera free", "step 12"}}),
     [](const auto& view) { return view.param.name; });
 
+TEST(Zones, AreNotDrawnAnyMoreWhenTheyAreTurnedOff) {
+    const char* const eye = "eye 200 30 400 10 -15";
+    const Image never = after(kWander, {"step 21", eye});
+    EXPECT_FALSE(looksTheSame(after(kWander, {"effect zones on", "step 21", eye}), never));
+    EXPECT_TRUE(looksTheSame(
+        after(kWander, {"effect zones on", "step 20", "effect zones off", "step 1", eye}), never));
+}
+
 // --- What is laid over a scene -------------------------------------------------------------------
 
 // A ring and the light one around it are the last lines. From far away and from nearby, in the middle of
