@@ -269,9 +269,9 @@ constexpr auto noMotion = [](auto& run) {
 
 // --- Thin walls -----------------------------------------------------------------------------------
 
-// Lanes, each with a wall somewhere along it and a bullet that begins somewhere in front of the
-// wall and ends behind; every other one flies the other way. Coordinates are multiples of an eighth
-// of a millimetre up to 1024 m, so that none is rounded.
+// Lanes, each with a wall somewhere along it and a bullet that passes it, begins in it or ends in it; every
+// other one flies the other way. Coordinates are multiples of an eighth of a millimetre up to 1024 m, so
+// that none is rounded.
 template <class Scalar>
 SweptFrame<Scalar> bulletsAtWalls(int lanes, float thickness, Random& random) {
     using Point = Vector3<float>;
@@ -287,7 +287,8 @@ SweptFrame<Scalar> bulletsAtWalls(int lanes, float thickness, Random& random) {
         const float y = 0.5F * static_cast<float>(i % 128);
         const float z = 0.5F * static_cast<float>(i / 128);
         const float wall = on(random.between(-1000, 1000));
-        const float phase = on(random.unit() * (way - kBullet - thick));
+        // From the bullet's front to the wall's: negative for a bullet that begins in the wall.
+        const float phase = on(random.between(-(thick + kBullet), way));
         const bool isForward = i % 2 == 0;
         const Point low(isForward ? wall - phase - kBullet : wall + thick + phase, y, z);
         const Aabb<float> bullet(low, low + Point::Constant(kBullet));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Zlib
 //
 // All clients at once on the grid of a live btDiscreteDynamicsWorld, which files its bodies once a
-// frame for all of them: picking, culling, AI, terrain. They find what they find in a grid of their own
-// with the same boxes.
+// frame for all of them: picking, culling, AI, terrain. They find what a look at every body finds, and
+// what they find in a grid of their own with the same boxes.
 
+#include <integration/bullet/conversions.hpp>
 #include <integration/bullet/group_filter.hpp>
 #include <integration/bullet/static_triangles.hpp>
 #include <integration/terrain/terrain.hpp>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <numeric>
 #include <thread>
 #include <vector>
 
@@ -94,6 +96,103 @@ private:
     btTriangleMesh mesh_;
 };
 
+/// Looks at every body of a world, or of each 997th one where that takes long.
+class EveryBody {
+public:
+    explicit EveryBody(const RoamingBodies& world) : world_(world) {}
+
+    void expectTheSame(const AllClients<Scalar>& found) const {
+        const Vector3<Scalar> eye = found.viewers[0].eye;
+        const PositionRegion<Scalar> ball(eye, found.kRadius);
+        EXPECT_EQ(found.within, idsIn(ball, found.accepts));
+        EXPECT_TRUE(std::ranges::includes(found.estimated, found.within));
+
+        const Camera<Scalar> camera = found.camera();
+        EXPECT_EQ(found.selected,
+                  idsIn(selectionRegion<Scalar>(camera, found.kDragFrom, found.kDragTo)));
+        std::vector<std::uint32_t> visible;
+        for (const ProxyId id :
+             idsIn(frustumRegion<Scalar>(camera.viewProjection(), camera.depthRange()))) {
+            visible.push_back(id.index);
+        }
+        EXPECT_EQ(found.visible, visible);
+        EXPECT_GT(visible.size(), 100U);
+
+        // First all that the ray hits, at last the nearest one that is wanted.
+        const RayRegion<Scalar> ray = camera.rayThrough(found.kPointer);
+        auto hit = idsIn(ray);
+        ASSERT_GE(found.picked.size(), hit.size());
+        std::vector<ProxyId> picked(found.picked.begin(), found.picked.begin() + std::ssize(hit));
+        std::ranges::sort(picked);
+        EXPECT_EQ(picked, hit);
+        EXPECT_EQ(found.picked.back().isNull(), idsIn(ray, found.accepts).empty());
+        expectNearest(found);
+        expectNeighbours(found);
+    }
+
+    /// The height of the ground below each body is where a ray meets it.
+    void expectTheGround(const std::vector<Terrain<Scalar>::Found>& heights) const {
+        for (std::size_t i = 0; i < heights.size(); i += 997) {
+            const ProxyId id = world_.idOf(world_.bodies[i]);
+            const btVector3 from = toBullet(positionOf(world_.grid().box(id)));
+            const btVector3 to = from - btVector3(0, 100, 0);
+            struct HillsOnly : btCollisionWorld::ClosestRayResultCallback {
+                using ClosestRayResultCallback::ClosestRayResultCallback;
+                bool needsCollision(btBroadphaseProxy* proxy) const override {
+                    return proxy->m_collisionFilterGroup == btBroadphaseProxy::StaticFilter;
+                }
+            } hit(from, to);
+            world_.hash().closestRay(from, to, hit);
+            ASSERT_EQ(heights[i].has_value(), hit.hasHit());
+            if (hit.hasHit()) {
+                EXPECT_NEAR(heights[i]->height, hit.m_hitPointWorld.y(), 1e-3);
+            }
+        }
+    }
+
+private:
+    template <class Region, class Accept = decltype([](ProxyId) { return true; })>
+    [[nodiscard]] std::vector<ProxyId> idsIn(const Region& region,
+                                             const Accept& accept = {}) const {
+        std::vector<ProxyId> ids;
+        world_.grid().forEach([&](ProxyId id, const Aabb<Scalar>& box) {
+            if (region.key(box) >= 0 && accept(id)) {
+                ids.push_back(id);
+            }
+        });
+        return ids;
+    }
+
+    void expectNearest(const AllClients<Scalar>& found) const {
+        std::vector<Scalar> distances;
+        world_.grid().forEach([&](ProxyId id, const Aabb<Scalar>& box) {
+            if (found.accepts(id)) {
+                distances.push_back((positionOf(box) - found.viewers[0].eye).squaredNorm());
+            }
+        });
+        std::ranges::sort(distances);
+        ASSERT_EQ(found.nearest.size(), found.kNearest);
+        for (std::size_t i = 0; i < found.kNearest; ++i) {
+            EXPECT_FLOAT_EQ(static_cast<float>(found.nearest[i].key),
+                            static_cast<float>(distances[i]));
+        }
+    }
+
+    void expectNeighbours(const AllClients<Scalar>& found) const {
+        const RadiusSearch<Scalar>& agents = found.agents();
+        ASSERT_EQ(agents.size(), world_.bodies.size());
+        for (std::uint32_t agent = 0; agent < agents.size(); agent += 997) {
+            const PositionRegion<Scalar> ball(agents.position(agent), found.kRadius);
+            const auto isOther = [&](ProxyId id) {
+                return id != agents.id(agent) && !found.blocks(id);
+            };
+            EXPECT_EQ(found.neighbourCounts[agent], idsIn(ball, isOther).size());
+        }
+    }
+
+    const RoamingBodies& world_;
+};
+
 TEST(AllClientsTest, AskAboutThirtyThousandBodiesInAFrameThatFilesThemOnce) {
     RoamingBodies world(30000);
     AllClients<Scalar> clients = world.clients();
@@ -118,11 +217,12 @@ TEST(AllClientsTest, AskAboutThirtyThousandBodiesInAFrameThatFilesThemOnce) {
         EXPECT_TRUE(clients.answers() == others.answers());
         EXPECT_EQ(clients.entered, others.entered);
         EXPECT_EQ(clients.left, others.left);
-        for (const std::size_t count :
-             {clients.visible.size(), clients.selected.size(), clients.seen.size()}) {
-            EXPECT_GT(count, 10U);
-        }
+        EveryBody(world).expectTheSame(clients);
+        EXPECT_GT(std::accumulate(clients.counts.begin(), clients.counts.end(), 0U), 1000U);
+        EXPECT_GT(clients.seen.size(), 10U);
+        EXPECT_GT(clients.selected.size(), 10U);
         const auto heights = world.heights();
+        EveryBody(world).expectTheGround(heights);
         EXPECT_GT(std::ranges::count_if(heights, [](auto& height) { return !!height; }), 29000);
         ASSERT_FALSE(HasFailure()) << "frame " << frame;
     }
