@@ -245,16 +245,24 @@ private:
         chart.settings = filled(heading.value("settings", ""), parameters);
         chart.data = std::move(data);
         for (const char* key :
-             {"mark", "x", "y", "series", "low", "high", "label", "shade", "theory", "front"}) {
+             {"mark", "x", "y", "series", "low", "high", "label", "shade", "theory"}) {
             if (heading.contains(key)) {
-                const Json& value = heading[key];
-                chart.drawn[key] = value.is_string() ? value.get<std::string>() : value.dump();
+                chart.drawn[key] = heading[key].get<std::string>();
+                refuseWhatCannotBeDrawn(chart, key, chart.drawn[key]);
             }
         }
-        for (const auto& [key, words] : chart.drawn) {
-            if (key != "front") {
-                refuseWhatCannotBeDrawn(chart, key, words);
+        const auto require = [&chart](const char* key) {
+            if (!chart.drawn.contains(key)) {
+                throw std::logic_error("The chart '" + chart.name + "' has no " + key + '.');
             }
+        };
+        require("x");
+        require("y");
+        if (heading.value("mark", "") == "cell") {
+            require("shade");
+        }
+        if (heading.value("front", false)) {
+            chart.drawn["front"] = "true";
         }
         return chart;
     }

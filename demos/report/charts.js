@@ -92,7 +92,7 @@ function looksOf(charts) {
 
 // --- Axes -----------------------------------------------------------------------------------------
 
-// Three to about eight round numbers: decades where there are enough, else steps of 1, 2, 5, else even ones.
+// Three to ten round numbers: decades where there are enough, else steps of 1, 2, 5, else even ones.
 function logTicks(low, high) {
     const all = vega.scale("log")().domain([low, high]).ticks(6);
     const beginningWith = (digits) => all.filter((tick) => digits.test(tick.toExponential()));
@@ -103,9 +103,9 @@ function logTicks(low, high) {
 // "0.001", "50", "20k", "1e-7"
 const TICK_LABEL = "format(datum.value, datum.value >= 10000 ? '~s' : datum.value < 0.0001 ? '~e' : '~g')";
 
-// "missed log0": the column, its channel, where its numbers stand as shares of the axis, and which names it has.
-// A logarithmic axis has 0, where log0 allows it, apart on a dotted line below the smallest number; its numbers
-// and those of the other columns become places by `transform`.
+// "missed log0": the column, its channel, where its numbers stand as shares of the axis, if anywhere, and which
+// names it has. A logarithmic axis has 0, where log0 allows it, apart on a dotted line below the smallest
+// number; its numbers and those of the other columns become places by `transform`.
 function axisOf(chart, words, others = []) {
     const [column, kind = "linear"] = words.split(" ");
     const { title } = chart.data.columns.find((each) => each.name === column);
@@ -150,7 +150,7 @@ function axisOf(chart, words, others = []) {
         begin: domain[0],
         transform: [column, ...others].map((each) => ({ calculate: place(fieldOf(each)), as: placeOf(each) })),
         channel: { ...channel, field: placeOf(column), scale, axis },
-        shareOf: (number) => vega.scale("log")().domain(domain)(number > 0 ? number : zero),
+        shareOf: (number) => vega.scale("log")().domain(domain)(number > 0 ? number : number === 0 ? zero : null),
     };
 }
 
@@ -189,11 +189,12 @@ function labelPlaces(points) {
 
 function labelLayer(chart, x, y, rows) {
     const column = fieldOf(chart.label);
-    const [placeX, placeY] = [fieldOf(x.column), fieldOf(y.column)];
-    const labelled = rows.filter((row) => [row[placeX], row[placeY]].every(Number.isFinite) && row[column] !== null);
+    const shareOn = (axis, row) => axis.shareOf(row[fieldOf(axis.column)]);
+    const hasPlace = (row) => [x, y].every((axis) => Number.isFinite(shareOn(axis, row)));
+    const labelled = rows.filter((row) => hasPlace(row) && row[column] !== null);
     const places = labelPlaces(labelled.map((row) => ({
-        x: x.shareOf(row[placeX]) * WIDTH,
-        y: (1 - y.shareOf(row[placeY])) * HEIGHT,
+        x: shareOn(x, row) * WIDTH,
+        y: (1 - shareOn(y, row)) * HEIGHT,
         label: textOf(row[column]),
     })));
     labelled.forEach((row, i) => ([row["label align"], row["label dx"], row["label dy"]] = places[i]));

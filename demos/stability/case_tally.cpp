@@ -26,7 +26,7 @@ void CaseTally::note(std::string_view sentence) {
     sum_.note += sentence;
 }
 
-void CaseTally::add(const CaseTally& other) {
+void CaseTally::add(const CaseTally& other, std::string_view where) {
     isAsked_ |= other.isAsked_;
     isCostly_ |= other.isCostly_;
     sum_.compared += other.sum_.compared;
@@ -36,7 +36,7 @@ void CaseTally::add(const CaseTally& other) {
         sum_.costRatio = std::max(sum_.costRatio.value_or(0), *other.sum_.costRatio);
     }
     for (const std::string& what : other.broken_) {
-        expect(false, what);
+        broken_.push_back(what + std::string(where));
     }
     difference_ = difference_.empty() ? other.difference_ : difference_;
 }

@@ -60,8 +60,9 @@ public:
     /// Appends a sentence.
     void note(std::string_view sentence);
 
-    /// Adds what another one found, but for its notes.
-    void add(const CaseTally& other);
+    /// Adds what another one found, but for its notes; `where` tells what was not as required from what was
+    /// not so here: " of the grid alone".
+    void add(const CaseTally& other, std::string_view where);
 
     /// OutcomeKind::nothing where nothing was compared, expected or measured.
     [[nodiscard]] CaseOutcome outcome() const;

@@ -140,7 +140,7 @@ CaseOutcome runCase(const HardCase& hardCase, const BroadphaseKind& kind,
         grid.isQuick = true;
         grid.seed = options.seed;
         hardCase.inDouble(grid);
-        run.add(grid);
+        run.add(grid, ", in the grid alone in double precision");
     }
     return run.outcome();
 }
@@ -208,8 +208,10 @@ Measurements runCases(const Cases& cases, const Kinds& kinds, const StabilityOpt
 /// verdict.
 void printReport(const Findings& findings, const Provenance& provenance, std::ostream& out) {
     const auto& [legend, table] = findings.printed.front();
-    printTable(table, out, true);
-    out << legend << '\n';
+    if (!table.rows.empty()) {
+        printTable(table, out, true);
+        out << legend << '\n';
+    }
     for (const std::string& explained : sentencesOf(findings.rows.at("explained"))) {
         out << explained << '\n';
     }

@@ -14,13 +14,18 @@ const charts = `(async () => {
     }
     return [...document.querySelectorAll("figure")].map((figure) => {
         const svg = figure.querySelector(".drawing svg");
+        const all = (selector) => [...(svg?.querySelectorAll(selector) ?? [])];
+        const names = all(".role-legend-label text");
         return {
             name: figure.id,
             drawn: figure.dataset.drawn,
             points: svg?.querySelectorAll(".mark-symbol.role-mark path").length,
             bars: svg?.querySelectorAll(".mark-rect.role-mark path").length,
             lines: svg?.querySelectorAll(".mark-line.role-mark path").length,
-            texts: [...(svg?.querySelectorAll("text") ?? [])].map((each) => each.textContent),
+            texts: all("text").map((each) => each.textContent),
+            series: all(".role-legend-symbol path").map((symbol, i) => [
+                names[i].textContent, getComputedStyle(symbol).fill + symbol.getAttribute("d").replace(/[-\\d.]/g, ""),
+            ]),
             broken: svg?.outerHTML.match(/NaN|Infinity|undefined/g)?.length ?? 0,
         };
     });

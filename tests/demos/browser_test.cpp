@@ -17,6 +17,7 @@
 #include <array>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -71,6 +72,22 @@ std::set<std::string> chartNamesOf(const Json& charts) {
     return names;
 }
 
+/// One look a series, whatever chart of the page it is in; some are in several.
+void expectOneLook(const Json& charts) {
+    std::map<std::string, std::set<std::string>> looks;
+    std::size_t series = 0;
+    for (const Json& chart : charts) {
+        for (const Json& each : chart["series"]) {
+            looks[each[0]].insert(each[1].get<std::string>());
+            ++series;
+        }
+    }
+    EXPECT_GT(series, looks.size());
+    for (const auto& [name, different] : looks) {
+        EXPECT_EQ(different.size(), 1U) << name << ": " << testing::PrintToString(different);
+    }
+}
+
 void expectSound(const Json& page) {
     const Json& with = page["withJavaScript"];
     // The one fault is that of the foreign script, so that breaches are known to be seen.
@@ -116,6 +133,8 @@ TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
     expectDrawn(pages[0]["withJavaScript"]["charts"], sampleCharts().size());
     expectDrawn(pages[1]["withJavaScript"]["charts"], 2);
     expectDrawn(pages[2]["withJavaScript"]["charts"], sampleCharts().size() + 2);
+    expectOneLook(pages[2]["withJavaScript"]["charts"]);
+    expectOneLook(pages[3]["withJavaScript"]["charts"]);
     const std::set<std::string> names = chartNamesOf(pages[3]["withJavaScript"]["charts"]);
     expectDrawn(pages[3]["withJavaScript"]["charts"], names.size());
     for (const char* name : {"paper-collision", "paper-visibility", "paper-AI", "paper-radius"}) {

@@ -5,9 +5,12 @@
 // What charts.js makes of declared charts; browser_test.cpp sees them drawn.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
+import { fileURLToPath } from "node:url";
 import { runInThisContext } from "node:vm";
 
 const [packages] = process.argv.slice(2);
@@ -26,10 +29,10 @@ const yChart = (y, ...ys) => chartOf({ x: "x", y }, ["x", "y"], ys.map((value, i
 const ofSeries = (...names) =>
     chartOf({ x: "x", y: "x", series: "m" }, ["x", "m"], names.map((name) => [1, name]));
 
-/// The rows of a layer as they are drawn, by the channels of what is drawn.
-async function drawn(chart, layer) {
+/// The rows of some layers as they are drawn, by the channels of what is drawn.
+async function drawn(chart, ...layers) {
     const spec = chartSpec(chart, looksOf([chart]));
-    const only = { ...spec, layer: [spec.layer[layer]] };
+    const only = { ...spec, layer: layers.map((layer) => spec.layer[layer]) };
     const view = new vega.View(vega.parse(vegaLite.compile(only).spec), { renderer: "none" });
     await view.runAsync();
     const marks = (item) => (item.marktype && item.marktype !== "group" && item.role === "mark" ? [item] : [])
@@ -39,8 +42,12 @@ async function drawn(chart, layer) {
 
 test("Ticks are decades, and fewer of them where they are many", () => {
     assert.deepEqual(logTicks(0.005, 700), [0.01, 0.1, 1, 10, 100]);
-    const many = logTicks(1e-12, 1e12);
-    assert(many.length >= 3 && many.length <= 9, many);
+    for (let low = -12; low < 12; ++low) {
+        for (let high = low + 3; high <= 12; ++high) {
+            const ticks = logTicks(10 ** low, 10 ** high);
+            assert(ticks.length >= 3 && ticks.length <= 10, ticks);
+        }
+    }
 });
 
 test("Ticks are round numbers within a decade", () => {
@@ -146,6 +153,60 @@ test("All variants of a method have its colour, and dashes and shapes of their o
     }
     assert.equal(of("colour", ...methods.map(([first]) => first)).size, 3);
     assert.equal(of("shape", ...variants).size, 3);
+});
+
+test("Points without a place have no label", async () => {
+    const rows = [[0, 1, "a"], [1, 0, "b"], [-1, 1, "c"], [1, null, "d"], [1, 1, null], [2, 2, "e"]];
+    const chart = chartOf({ x: "x log", y: "y log", label: "l" }, ["x", "y", "l"], rows);
+    assert.deepEqual((await drawn(chart, 1)).map(({ text }) => text), ["e"]);
+    assert.deepEqual((await drawn({ ...chart, x: "x log0" }, 1)).map(({ text }) => text), ["a", "e"]);
+});
+
+test("Errors reach from low to high, on logarithmic axes too", async () => {
+    const chart = chartOf({ mark: "line", x: "x", y: "y log", low: "l", high: "h" }, ["x", "y", "l", "h"],
+        [[1, 2, 1, 4], [2, 8, 4, 16]]);
+    const rules = await drawn(chart, 1);
+    const heights = rules.map(({ y, y2 }) => Math.abs(y2 - y));
+    assert(heights.length === 2 && heights[0] > 20 && Math.abs(heights[0] - heights[1]) < 1e-6, heights);
+});
+
+test("Bars whose names are long lie, each with its error", async () => {
+    const names = "abcd".split("").map((letter) => letter.repeat(40));
+    const chart = chartOf({ mark: "bar", x: "x names", y: "y", low: "l", high: "h" }, ["x", "y", "l", "h"],
+        names.map((name, i) => [name, i + 1, i, i + 2]));
+    const [bars, rules] = [await drawn(chart, 0), await drawn(chart, 1)];
+    assert(bars.length === 4 && bars.every(({ width, height }) => width > height), "bars");
+    assert(rules.length === 4 && rules.every(({ x, x2, y, y2 }) => x !== x2 && (y2 ?? y) === y), "rules");
+});
+
+test("Cells say what is in them, in ink that can be read", async () => {
+    const chart = chartOf({ mark: "cell", x: "x names", y: "y names", shade: "z log" }, ["x", "y", "z"],
+        [["a", "c", 1], ["b", "c", 1234], ["a", "d", null]]);
+    const texts = (await drawn(chart, 0, 1)).filter(({ text }) => text);
+    assert.deepEqual(texts.map(({ text }) => text), ["1", "1,234"]);
+    assert.deepEqual(texts.map(({ fill }) => fill), ["#ffffff", "#000000"]);
+});
+
+test("What is drawn into files has titles, all rows, and colours of its own", () => {
+    const folder = mkdtempSync(join(tmpdir(), "charts-"));
+    try {
+        const chart = chartOf({ mark: "line", x: "x", y: "y", series: "m" }, ["x", "y", "m"],
+            [[1, 1, "a"], [2, 2, "a"], [1, 3, "b"]]);
+        const charts = [{ ...chart, name: "one", title: "The title", settings: "the settings" }];
+        writeFileSync(join(folder, "found.json"), JSON.stringify({ charts }));
+        execFileSync(process.execPath, [fileURLToPath(new URL("../../demos/report/draw_charts.mjs", import.meta.url)),
+            packages, folder]);
+        const [spec, svg] = ["one.vl.json", "one.svg"].map((name) => readFileSync(join(folder, name), "utf8"));
+        const { title, data } = JSON.parse(spec);
+        assert.deepEqual([title, data.values.length], [{ text: ["The title"], subtitle: ["the settings"] }, 3]);
+        for (const text of [spec, svg]) {
+            assert.doesNotMatch(text, /var\(|undefined|NaN/);
+            assert.match(text, /#0072b2/); // of the first series
+        }
+        assert.match(svg, /The title.*the settings/s);
+    } finally {
+        rmSync(folder, { recursive: true });
+    }
 });
 
 test("Columns that Vega would read as paths are columns", async () => {

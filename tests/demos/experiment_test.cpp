@@ -226,6 +226,11 @@ TEST(Findings, NameTheFaultOfADeclaration) {
               "Nothing is drawn as 'bars'.");
     EXPECT_EQ(faultOf("/* {\"chart\": \"C\", \"y\": \"ms log1\"} */ SELECT ms FROM frames;"),
               "Nothing is drawn as 'log1'.");
+    EXPECT_EQ(faultOf("/* {\"chart\": \"C\", \"x\": \"ms\"} */ SELECT ms FROM frames;"),
+              "The chart 'C' has no y.");
+    EXPECT_EQ(faultOf("/* {\"chart\": \"C\", \"mark\": \"cell\", \"x\": \"ms\", \"y\": \"ms\"} */ "
+                      "SELECT ms FROM frames;"),
+              "The chart 'C' has no shade.");
     EXPECT_EQ(faultOf("/* {\"shown\": \"C\"} */ SELECT ms FROM frames;"),
               "Nothing is shown as {\"shown\":\"C\"}.");
     EXPECT_EQ(faultOf("SELEC 1;"), "near \"SELEC\": syntax error in: SELEC 1;");

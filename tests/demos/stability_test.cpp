@@ -153,6 +153,8 @@ TEST(Stability, SaysWhatItLeftOutForWantOfTime) {
     const Typed printed = run({"--quick", "--quiet", "--only", "H9,H31", "--time-limit", "1e-9"});
     EXPECT_EQ(lastLineOf(printed.out),
               "0 of 0 hard cases hold; left out for want of time: H9, H31\n");
+    EXPECT_EQ(printed.out.find("---"), std::string::npos) << "no table of nothing:\n"
+                                                          << printed.out;
     EXPECT_EQ(run({"--time-limit", "0"}).exitCode, kExitUsage);
 }
 
@@ -298,6 +300,21 @@ TEST(Stability, DoesNotJudgeOursWhereItIsNotAsked) {
     EXPECT_EQ(printed.out.find("WRONG"), std::string::npos) << printed.out;
     EXPECT_EQ(lastLineOf(printed.out),
               "ours was not asked; Bullet's broadphases do not: dbvt in 1 of 1\n");
+}
+
+TEST(Stability, TellsWhatGoesWrongInDoublePrecisionAlone) {
+    const std::array cases{
+        HardCase{"H1", "doubles", "any numbers", "that all is fine", [](auto& run) {
+                     run.expect(std::is_same_v<ScalarOf<decltype(run)>, float>, "all is fine");
+                 }}};
+    const std::array kinds{broadphaseKinds()[0], broadphaseKinds()[1]};
+    const Typed printed = run({"--quiet"}, kinds, cases);
+    EXPECT_EQ(printed.exitCode, kExitCheckFailed);
+    for (const char* text :
+         {"H1 doubles: WRONG", "Not so: all is fine, in the grid alone in double precision."}) {
+        EXPECT_NE(printed.out.find(text), std::string::npos) << text << '\n' << printed.out;
+    }
+    EXPECT_EQ(lastLineOf(printed.out), "0 of 1 hard cases hold\n");
 }
 
 CaseOutcome crash() {

@@ -23,6 +23,10 @@ const std::vector<std::string> kPrograms = [] {
     return std::vector<std::string>(std::istream_iterator<std::string>(names), {});
 }();
 
+TEST(StockPrograms, AreAllThere) {
+    EXPECT_EQ(kPrograms.size(), 31U);
+}
+
 /// A program of a precision of Bullet's.
 class TriedPrograms : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
