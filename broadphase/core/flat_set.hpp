@@ -43,6 +43,7 @@ public:
     /// The key's number, or kNone. Cost: O(1).
     [[nodiscard]] std::uint32_t find(std::uint64_t key) const noexcept {
         const Place place = placeOf(key, hash(key));
+        // cppcheck-suppress nullPointerRedundantCheck
         return place.isNone() ? kNone : groups_[place.group].numbers[place.lane];
     }
 

@@ -167,7 +167,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     /// At the last update.
     [[nodiscard]] bool couldPair(std::uint32_t a, std::uint32_t b) const noexcept {
         return groups.empty() ||
-               mayPair(groups[2 * std::size_t{a} + 1], groups[2 * std::size_t{b} + 1]);
+               mayPair(groups[1 + 2 * std::size_t{a}], groups[1 + 2 * std::size_t{b}]);
     }
     /// For searches among all proxies: null where all may pair.
     [[nodiscard]] const ProxyGroups* groupsOfAll() const noexcept {

@@ -21,6 +21,7 @@ template <class Scalar>
 class TreeRay {
 public:
     /// The region must not be empty. `origin` [m] is what the tree's bounds are relative to.
+    // cppcheck-suppress uninitMemberVar
     TreeRay(const RayRegion<Scalar>& ray, const std::array<double, 3>& origin) {
         Scalar sum = 0;  // NaN when a number is
         for (std::size_t axis = 0; axis < 3; ++axis) {

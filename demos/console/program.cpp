@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <exception>
 #include <iostream>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -45,7 +46,8 @@ std::vector<std::string> takeRest(std::vector<std::string>& arguments) {
     if (dashes == arguments.end()) {
         return {};
     }
-    std::vector<std::string> rest(dashes + 1, arguments.end());
+    std::vector<std::string> rest;
+    std::move(dashes + 1, arguments.end(), std::back_inserter(rest));
     arguments.erase(dashes, arguments.end());
     return rest;
 }

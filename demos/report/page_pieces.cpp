@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -64,10 +65,11 @@ std::string htmlOf(const DataTable& table) {
     }
     std::vector<std::vector<Cell>> rows;
     for (const std::vector<Value>& values : table.rows) {
-        std::vector<Cell>& row = rows.emplace_back();
+        std::vector<Cell> row;
         for (const Value& value : values) {
             row.push_back({valueText(value), isText(value) ? "" : "number"});
         }
+        rows.push_back(std::move(row));
     }
     join(rows, [&](std::size_t a, std::size_t b) {
         return isText(table.rows[a][0]) && table.rows[a][0] == table.rows[b][0];
@@ -93,10 +95,11 @@ std::string htmlOf(const GradedTable& table) {
     }
     std::vector<std::vector<Cell>> rows;
     for (const std::vector<GradedText>& texts : table.rows) {
-        std::vector<Cell>& row = rows.emplace_back();
+        std::vector<Cell> row;
         for (const GradedText& text : texts) {
             row.push_back({text.marked(), row.size() > 1 ? lookOf(text.grade) : ""});
         }
+        rows.push_back(std::move(row));
     }
     join(rows, [&](std::size_t a, std::size_t b) { return rows[a][0].text == rows[b][0].text; });
     return tableOf("table class=\"graded\"", tag("caption", caption) + '\n',
