@@ -9,8 +9,9 @@ cmake_minimum_required(VERSION 3.22)
 
 string(CONCAT offered
        "(CameraInverse|FewPairs|Kernels|Motions<|PairState<|Population<|QueryScope|Store<|Table<|"
-       "firstContactExactly|instructionSet|isAvailable|kernels|nameOf|reportBrokenAssert|"
-       "reportMessage|search(Boxes|Ray|Volume)|useInstructionSet)")
+       "firstContactExactly|instructionSet|isAvailable|kernels|nameOf|"
+       "raise(InvalidArgument|LengthError)|reportBrokenAssert|reportMessage|"
+       "search(Boxes|Ray|Volume)|useInstructionSet)")
 
 string(REPLACE "," ";" libraries "${LIBRARIES}")
 foreach(library IN LISTS libraries)
