@@ -1,110 +1,27 @@
 // SPDX-License-Identifier: Zlib
 //
-// What moves so fast that it matters what it passes. Ours sweeps, in every mode; Bullet's broadphases are
-// given the box around start and end, as m_useContinuous does.
+// What moves so fast that it matters what it passes.
 
 #include <demos/stability/cases/cases.hpp>
-
-#include <broadphase/sweeps.hpp>
+#include <demos/stability/swept_scene.hpp>
 
 #include <array>
 
 namespace hashphase::demos {
 namespace {
 
-/// Moving boxes, the first of which sweep; the others stand still.
-template <class Scalar>
-struct SweptFrame {
-    std::vector<MovingBox<Scalar>> objects;
-    std::uint32_t movers = 0;
-};
-
-/// The pairs that touch at some time, of one mover at least.
-template <class Scalar>
-Keys truthOf(const SweptFrame<Scalar>& frame, const Lattice& lattice) {
-    const LimitPause pause;
-    Keys pairs;
-    const auto count = static_cast<std::uint32_t>(frame.objects.size());
-    for (std::uint32_t a = 0; a < frame.movers; ++a) {
-        for (std::uint32_t b = a + 1; b < count; ++b) {
-            if (lattice.meet(frame.objects[a], frame.objects[b])) {
-                pairs.push_back(pairKey(a, b));
-            }
-        }
-    }
-    return pairs;
-}
-
-Keys withMovers(const Keys& pairs, std::uint32_t movers) {
-    Keys kept = pairs;
-    std::erase_if(kept, [movers](PairKey pair) { return firstOf(pair) >= movers; });
-    return kept;
-}
-
-/// What Sweeps and Pairs find: pairs of at least one mover, sorted; and what it cost.
-template <class Scalar>
-std::pair<Keys, SweepCost> sweepOurs(const SweptFrame<Scalar>& frame, Sweep sweep,
-                                     const GridConfig& config = {}) {
-    Grid<Scalar> grid(config);
-    Sweeps<Scalar> sweeps(grid);
-    Pairs<Scalar> pairs(grid, &sweeps);
-    for (std::uint32_t i = 0; i < frame.objects.size(); ++i) {
-        const ProxyId id = grid.add(frame.objects[i].box);
-        if (i < frame.movers) {
-            sweeps.set(id, frame.objects[i].displacement, sweep);
-        }
-    }
-    Keys found;
-    for (const ProxyPair& pair : pairs.update().born) {
-        found.push_back(pairKey(pair.first.index, pair.second.index));
-    }
-    return {withMovers(found, frame.movers), sweeps.lastCost()};
-}
-
-/// Of ours, in every mode; returns what each took, in tests.
-template <class Scalar>
-std::array<std::uint64_t, 3> judgeFrame(CaseRun<Scalar>& run, const SweptFrame<Scalar>& frame,
-                                        const Keys& exact, const GridConfig& config = {}) {
-    std::array<std::uint64_t, 3> tests{};
-    if (run.isOurs) {
-        constexpr std::array kModes{Sweep::automatic, Sweep::box, Sweep::line};
-        for (std::size_t i = 0; i < kModes.size(); ++i) {
-            const auto [pairs, cost] = sweepOurs(frame, kModes[i], config);
-            run.compare(pairs, exact);
-            run.expect(cost.segments <= 40 * std::uint64_t{frame.movers},
-                       "a way has 40 segments at most");
-            tests[i] = cost.boxesTested + cost.contactsTested;
-        }
-        return tests;
-    }
-    Boxes<Scalar> boxes;
-    for (const MovingBox<Scalar>& object : frame.objects) {
-        boxes.push_back(object.box.merged(object.box.translated(object.displacement)));
-    }
-    PairScene<Scalar> scene(run, boxes);
-    scene.findPairs();
-    run.compare(withMovers(scene.reported(), frame.movers), exact);
-    return tests;
-}
-
-template <class Scalar>
-std::array<std::uint64_t, 3> judgeFrame(CaseRun<Scalar>& run, const SweptFrame<Scalar>& frame,
-                                        double unit, const GridConfig& config = {}) {
-    return judgeFrame(run, frame, truthOf(frame, Lattice(unit)), config);
-}
-
 // --- Far and fast ---------------------------------------------------------------------------------
 
 // Cubes that stand on multiples of the unit, and some that fly.
 template <class Scalar>
-SweptFrame<Scalar> flyingFrame(std::uint64_t seed, int standing, int flying, float side, float way,
+SweptScene<Scalar> flyingFrame(std::uint64_t seed, int standing, int flying, float side, float way,
                                float unit) {
     using Point = Vector3<float>;
     Random random(seed);
     const auto on = [&](float low, float high) {
         return std::floor(random.between(low, high) / unit) * unit;
     };
-    SweptFrame<Scalar> frame;
+    SweptScene<Scalar> frame;
     frame.movers = static_cast<std::uint32_t>(flying);
     for (int i = 0; i < flying + standing; ++i) {
         Point displacement = Point::Zero();
@@ -131,7 +48,7 @@ void judgeTeleports(CaseRun<Scalar>& run) {
     std::array<std::uint64_t, 3> testsOfShortWays{};
     for (const Scalar length : {1e6F, 2e9F}) {
         Random random(run.seed);
-        SweptFrame<Scalar> frame;
+        SweptScene<Scalar> frame;
         frame.movers = 40;
         for (std::uint32_t i = 0; i < 640; ++i) {
             const Point around = pointIn<Scalar>(random, -9, 9);
@@ -166,7 +83,7 @@ void judgeRoundedCells(CaseRun<Scalar>& run) {
     const Lattice lattice(0x1p-20);
     for (const Scalar shift : {0.0F, 3.0F, 6.0F, 9.0F, 12.0F}) {
         Random random(run.seed);
-        SweptFrame<Scalar> frame;
+        SweptScene<Scalar> frame;
         frame.movers = 100;
         const auto add = [&](const Point& center, const Point& way) {
             frame.objects.push_back({lattice.on<Scalar>(cubeAt(center, Scalar(0.9))), way});
@@ -193,7 +110,7 @@ constexpr auto millionCells = [](auto& run) {
     if (run.isOurs) {
         // Far ways cost what near ones do that pass the same cubes.
         const auto near = flyingFrame<Scalar>(run.seed, 2000, 20, 40, 200, 0.125F);
-        const auto work = [](const SweptFrame<Scalar>& of) {
+        const auto work = [](const SweptScene<Scalar>& of) {
             return static_cast<double>(sweepOurs(of, Sweep::automatic).second.boxesTested);
         };
         run.addCost(work(frame) / std::max(1.0, work(near)), 4);
@@ -243,7 +160,7 @@ constexpr auto noMotion = [](auto& run) {
     const Boxes<Scalar> boxes = scatteredCubes<Scalar>(150, 6, 0.5F, 1.5F, run.seed);
     const Keys exact = touchingPairs(boxes);
     for (const Scalar speed : {0.0F, -0.0F, 1e-12F, 1e-30F, 1e-40F}) {
-        SweptFrame<Scalar> frame;
+        SweptScene<Scalar> frame;
         frame.movers = static_cast<std::uint32_t>(boxes.size());
         for (const Aabb<Scalar>& box : boxes) {
             frame.objects.push_back({box, Vector3<Scalar>(speed, 0, -speed)});
@@ -273,14 +190,14 @@ constexpr auto noMotion = [](auto& run) {
 // other one flies the other way. Coordinates are multiples of an eighth of a millimetre up to 1024 m, so
 // that none is rounded.
 template <class Scalar>
-SweptFrame<Scalar> bulletsAtWalls(int lanes, float thickness, Random& random) {
+SweptScene<Scalar> bulletsAtWalls(int lanes, float thickness, Random& random) {
     using Point = Vector3<float>;
     constexpr float kUnit = 0x1p-13F;
     constexpr float kBullet = 0x1p-7F;  // 8 mm
     const auto on = [](float x) { return std::floor(x / kUnit) * kUnit; };
     const float way = on(200.0F / 60);
     const float thick = std::max(kUnit, std::round(thickness / kUnit) * kUnit);
-    SweptFrame<Scalar> frame;
+    SweptScene<Scalar> frame;
     frame.movers = static_cast<std::uint32_t>(lanes);
     std::vector<MovingBox<Scalar>> walls;
     for (int i = 0; i < lanes; ++i) {
@@ -329,7 +246,7 @@ void judgeMoments(CaseRun<Scalar>& run) {
     const auto draw = [&](std::uint32_t count) {
         return static_cast<Scalar>(1 + indexBelow(random, count));
     };
-    SweptFrame<Scalar> frame;
+    SweptScene<Scalar> frame;
     std::vector<MovingBox<Scalar>> others;
     Keys exact;
     for (int i = 0; i < 12 * 12 * 12; ++i) {
@@ -389,7 +306,7 @@ void judgeInfiniteBoxes(CaseRun<Scalar>& run) {
 
 constexpr auto crossing = [](auto& run) {
     using Scalar = ScalarOf<decltype(run)>;
-    SweptFrame<Scalar> frame;
+    SweptScene<Scalar> frame;
     const auto add = [&frame](const Vector3<Scalar>& low, const Vector3<Scalar>& way) {
         frame.objects.push_back({{low, low + Vector3<Scalar>::Ones()}, way});
         ++frame.movers;
