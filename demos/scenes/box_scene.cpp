@@ -2,6 +2,7 @@
 #include <demos/scenes/box_scene.hpp>
 
 #include <demos/scenes/brownian_scene.hpp>
+#include <demos/scenes/near_scene.hpp>
 #include <demos/scenes/paper_scene.hpp>
 
 #include <array>
@@ -87,6 +88,17 @@ BrownianBoxes oneInSoManyMoves(std::size_t objects, std::uint64_t seed) {
     return someMovingBoxes(objects, seed, period);
 }
 
+constexpr NearMotion kTrembling{.tremble = 0.01F};
+constexpr NearMotion kCreeping{.creep = 0.002F};
+constexpr NearMotion kBreathing{.breathe = 0.01F};
+constexpr NearMotion kMixed2{.tremble = 0.01F, .travellers = 50};
+constexpr NearMotion kMixed20{.tremble = 0.01F, .travellers = 5};
+
+template <const NearMotion& motion>
+std::unique_ptr<BoxScene> makeNear(std::size_t objects, std::uint64_t seed) {
+    return std::make_unique<NearScene>(objects, seed, motion);
+}
+
 constexpr std::array kBoxScenes{
     BoxSceneKind{"paper", "spheres of radius 1 m roaming a random terrain of 400 x 400 m",
                  "spheres", 30'000, makeBoxScene<PaperScene>},
@@ -104,6 +116,16 @@ constexpr std::array kBoxScenes{
                  makeBrownian<oneInSoManyMoves<50>>},
     BoxSceneKind{"static-90", "uniform boxes of which 90 % are static and 10 % move", "boxes",
                  100'000, makeBrownian<mostlyStaticBoxes>},
+    BoxSceneKind{"trembling", "uniform boxes that tremble by 1 cm about their places", "boxes",
+                 30'000, makeNear<kTrembling>},
+    BoxSceneKind{"creeping", "uniform boxes that creep, each by up to 2 mm an axis and frame",
+                 "boxes", 30'000, makeNear<kCreeping>},
+    BoxSceneKind{"breathing", "uniform boxes that grow and shrink by 1 cm", "boxes", 30'000,
+                 makeNear<kBreathing>},
+    BoxSceneKind{"mixed-2", "trembling boxes, through which 2 % travel", "boxes", 30'000,
+                 makeNear<kMixed2>},
+    BoxSceneKind{"mixed-20", "trembling boxes, through which 20 % travel", "boxes", 30'000,
+                 makeNear<kMixed20>},
     BoxSceneKind{"terdiman", "Terdiman's box pruning scene, large integer boxes that drift",
                  "boxes", 10'000, makeBoxScene<TerdimanScene>},
     BoxSceneKind{"brownian", "Broadmark's Brownian scene, fast unit cubes that fill a tenth",

@@ -250,6 +250,7 @@ bool takesPartInFrames(const ContestantKind& kind, std::size_t objects) {
 }
 
 std::vector<Benchmark> pairBenchmarks() {
+    const Sizes nearSizes{100, 1'000, 10'000, 30'000, 100'000};
     Benchmark paper = pairsIn("S1-paper", "paper");
     // At a million every sphere would overlap a hundred others.
     paper.largest = 300'000;
@@ -276,6 +277,11 @@ std::vector<Benchmark> pairBenchmarks() {
             pairsIn("S4-moving-2", "moving-2"),
             pairsIn("S5-static-90", "static-90"),
             pairsIn("S6-piles", "piles"),
+            pairsIn("trembling", "trembling", nearSizes),
+            pairsIn("creeping", "creeping", nearSizes),
+            pairsIn("breathing", "breathing", nearSizes),
+            pairsIn("mixed-2", "mixed-2", nearSizes),
+            pairsIn("mixed-20", "mixed-20", nearSizes),
             std::move(terdiman),
             pairsIn("brownian", "brownian"),
             std::move(tiny),
