@@ -27,6 +27,10 @@ std::string configError(const GridConfig& config) {
     if (config.updatesBeforeRest < 1 || config.updatesBeforeRest > 1'000'000) {
         return rangeError("updatesBeforeRest", config.updatesBeforeRest, "between 1 and 1000000");
     }
+    if (config.slack && !(*config.slack >= 0 && *config.slack <= 1e30)) {
+        return rangeError("slack", *config.slack,
+                          "empty (follow each proxy's motion) or between 0 and 1e30");
+    }
     return {};
 }
 

@@ -3,6 +3,7 @@
 
 #include <broadphase/export.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace hashphase {
@@ -20,6 +21,11 @@ struct GridConfig {
     /// After this many updates without a change a proxy counts as resting, and later updates no
     /// longer touch it. Valid: 1 to 1,000,000.
     std::uint32_t updatesBeforeRest = 8;
+
+    /// How far a proxy may move [m] from where it is filed before it is filed anew: boxes that tremble, or
+    /// creep, cost less so. Answers are exact at all times. Empty: the grid follows the motion of each
+    /// proxy. 0: not at all. Valid: 0 to 1e30.
+    std::optional<double> slack{};
 
     friend bool operator==(const GridConfig&, const GridConfig&) = default;
 };

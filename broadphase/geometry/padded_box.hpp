@@ -24,6 +24,23 @@ template <class Scalar>
             Vector3<Scalar>(box.high[0], box.high[1], box.high[2])};
 }
 
+template <class Scalar>
+[[nodiscard]] Aabb<Scalar> nanBox() {
+    const auto nan = Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
+    return {nan, nan};
+}
+
+/// Whether no coordinate of the box lies beyond those of `outer`; not of one with a NaN.
+template <class Scalar>
+[[nodiscard]] inline bool isWithin(const PaddedBox<Scalar>& box,
+                                   const PaddedBox<Scalar>& outer) noexcept {
+    bool result = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        result &= (box.low[axis] >= outer.low[axis]) & (box.high[axis] <= outer.high[axis]);
+    }
+    return result;
+}
+
 }  // namespace hashphase::detail
 
 #include <broadphase/core/restore_macros.hpp>

@@ -61,6 +61,9 @@ struct Level {
     const std::uint32_t* proxyIndices = nullptr;          // of all entries
     const Row* rowOfEntry = nullptr;                      // of all entries, where a level is hashed
     const SortedBucket<Scalar>* sortedBuckets = nullptr;  // the level's own, in ascending order
+    // By what these are sorted: the min corners by which entries are filed, so many numbers apart.
+    const Scalar* sortKeys[3] = {};
+    std::uint32_t sortStride = 1;
 
     [[nodiscard, gnu::always_inline]] bool isDense() const noexcept {
         return kind == LevelKind::dense;

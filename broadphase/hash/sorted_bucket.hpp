@@ -6,6 +6,7 @@
 
 #include <broadphase/proxy_groups.hpp>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace hashphase::detail {
@@ -28,14 +29,25 @@ struct SortedBucket {
     bool haveSameGroups;
 };
 
+/// The min corners of entries along an axis, as they are filed, in an array of them or of larger parts.
+template <class Scalar>
+struct SortKeys {
+    const Scalar* first;
+    std::uint32_t stride;
+
+    [[nodiscard, gnu::always_inline]] Scalar operator[](std::uint32_t entry) const noexcept {
+        return first[std::size_t{entry} * stride];
+    }
+};
+
 // Of its entries first to last, of which none is long, only some can overlap a box that extends from
-// `low` to `high` along the axis. `column` has their min corners; erased entries are NaN, and a bound
-// may be: there, as with every rounding, too many entries are left rather than too few.
+// `low` to `high` along the axis. Erased entries may have a key of NaN, and a bound may be NaN: there, as
+// with every rounding, too many entries are left rather than too few.
 
 /// The first of them, or one before it.
 template <class Scalar>
 [[nodiscard, gnu::always_inline]] inline std::uint32_t firstNear(const SortedBucket<Scalar>& sorted,
-                                                                 const Scalar* column,
+                                                                 const SortKeys<Scalar>& keys,
                                                                  std::uint32_t first,
                                                                  std::uint32_t last,
                                                                  Scalar low) noexcept {
@@ -44,7 +56,7 @@ template <class Scalar>
     const Scalar bound = low - sorted.reach;
     while (first < last) {
         const std::uint32_t middle = first + (last - first) / 2;
-        if (column[middle] < bound) {
+        if (keys[middle] < bound) {
             first = middle + 1;
         } else {
             last = middle;
@@ -55,13 +67,13 @@ template <class Scalar>
 
 /// One past the last of them, or one behind it; before firstNear() when there is none.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline std::uint32_t endOfNear(const Scalar* column,
+[[nodiscard, gnu::always_inline]] inline std::uint32_t endOfNear(const SortKeys<Scalar>& keys,
                                                                  std::uint32_t first,
                                                                  std::uint32_t last,
                                                                  Scalar high) noexcept {
     while (first < last) {
         const std::uint32_t middle = first + (last - first) / 2;
-        if (high < column[middle]) {
+        if (high < keys[middle]) {
             last = middle;
         } else {
             first = middle + 1;

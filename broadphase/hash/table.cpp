@@ -184,6 +184,7 @@ void Table<Scalar>::build(std::span<const std::uint32_t> boxIndices,
         if (layout_ == nullptr) {
             layout_ = std::make_unique<LevelLayout<Scalar>>();
         }
+        settled_.clear();
         findBuckets(boxes, fixed, parallelFor);
         sortEntries(boxIndices, boxes, groups, parallelFor);
     } catch (...) {
@@ -232,6 +233,11 @@ void Table<Scalar>::linkLevels() noexcept {
         level.rowOfEntry = rowOfEntry_.data();
         level.sortedBuckets = sorted;
         sorted += level.sortedCount;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            level.sortKeys[axis] =
+                isSettled() ? &settled_[0].filed.low[axis] : bounds_[axis].data();
+        }
+        level.sortStride = isSettled() ? sizeof(SettledBox<Scalar>) / sizeof(Scalar) : 1;
     }
 }
 
@@ -242,12 +248,57 @@ void Table<Scalar>::clear() noexcept {
     proxyIndices_.clear();
     order_.clear();
     sortedBuckets_.clear();
+    settled_.clear();
+}
+
+// --- Boxes that move within those by which they are filed ----------------------------------------
+
+template <class Scalar>
+void Table<Scalar>::settle(std::span<const PaddedBox<Scalar>> boxes) {
+    try {
+        settled_.resize(size());
+    } catch (...) {
+        clear();
+        throw;
+    }
+    for (std::uint32_t entry = 0; entry < size(); ++entry) {
+        settled_[entry] = {padded(box(entry)), boxes[order_[entry]]};
+    }
+    isAsFiled_ = true;
+    linkLevels();
+}
+
+template <class Scalar>
+void Table<Scalar>::refresh(std::uint32_t entry) noexcept {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        bounds_[axis][entry] = settled_[entry].now.low[axis];
+        bounds_[axis + 3][entry] = settled_[entry].now.high[axis];
+    }
+}
+
+template <class Scalar>
+void Table<Scalar>::refreshAll(ParallelFor parallelFor) {
+    isAsFiled_ = false;
+    parallelFor(size(), kTableGrain, [this](std::size_t begin, std::size_t end) {
+        for (std::size_t entry = begin; entry < end; ++entry) {
+            refresh(static_cast<std::uint32_t>(entry));
+        }
+    });
+}
+
+template <class Scalar>
+void Table<Scalar>::unsettle() noexcept {
+    settled_.clear();
+    linkLevels();
 }
 
 template <class Scalar>
 void Table<Scalar>::erase(std::uint32_t entry) noexcept {
     for (auto& column : bounds_) {
         column[entry] = std::numeric_limits<Scalar>::quiet_NaN();
+    }
+    if (isSettled()) {
+        settled_[entry].now = padded(nanBox<Scalar>());
     }
 }
 
@@ -259,6 +310,7 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
            sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
+           settled_.capacity() * sizeof(settled_[0]) +
            (layout_ != nullptr ? layout_->memoryBytes() : 0);
 }
 
@@ -278,22 +330,34 @@ void Table<Scalar>::releaseUnusedMemory() noexcept {
     for (auto& column : bounds_) {
         column.shrink_to_fit();
     }
+    settled_.shrink_to_fit();
     freeArrays(buckets_, longOnes_);
     linkLevels();
+}
+
+// Erased entries of a table that is not settled have no corner any more.
+template <class Scalar>
+bool Table<Scalar>::isSorted(const SortedBucket<Scalar>& sorted) const {
+    const auto axis = static_cast<Eigen::Index>(sorted.axis);
+    for (std::uint32_t entry = sorted.first + 1; entry < sorted.firstLong; ++entry) {
+        if (filedBox(entry).min()[axis] < filedBox(entry - 1).min()[axis]) {
+            return false;
+        }
+    }
+    return true;
 }
 
 template <class Scalar>
 bool Table<Scalar>::areSorted() const {
     for (std::size_t i = 0; i < sortedBuckets_.size(); ++i) {
         const SortedBucket<Scalar>& sorted = sortedBuckets_[i];
-        const Scalar* column = bounds_[sorted.axis].data();
         const bool isFirst = i == 0 || sortedBuckets_[i - 1].bucket != sorted.bucket;
         const bool isLast =
             i + 1 == sortedBuckets_.size() || sortedBuckets_[i + 1].bucket != sorted.bucket;
         if (sorted.first != (isFirst ? bucketStart_[sorted.bucket] : sortedBuckets_[i - 1].last) ||
             (isLast && sorted.last != bucketStart_[sorted.bucket + 1]) ||
             sorted.firstLong < sorted.first || sorted.firstLong > sorted.last ||
-            !std::is_sorted(column + sorted.first, column + sorted.firstLong)) {
+            !isSorted(sorted)) {
             return false;
         }
     }
@@ -314,9 +378,12 @@ std::string Table<Scalar>::validate() const {
                 return "Buckets partition the entries in order: broken.";
             }
             for (; entry < bucketStart_[b + 1]; ++entry) {
-                const Aabb<Scalar> box = this->box(entry);
-                if (hasNan(box) || !level.hasCells()) {
+                if (hasNan(this->box(entry)) || !level.hasCells()) {
                     continue;
+                }
+                const Aabb<Scalar> box = filedBox(entry);
+                if (isSettled() && !isWithin(settled_[entry].now, settled_[entry].filed)) {
+                    return "A settled box lies within that by which it is filed: broken.";
                 }
                 Cell low{};
                 for (std::size_t axis = 0; axis < 3; ++axis) {

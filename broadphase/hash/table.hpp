@@ -55,6 +55,41 @@ public:
     /// Leaves nothing filed.
     void clear() noexcept;
 
+    /// To be called after build(): the boxes that it was given are those by which boxes[i] are filed, each
+    /// around boxes[i]. Answers are by them until refreshAll(). Where memory runs out, nothing is filed.
+    void settle(std::span<const PaddedBox<Scalar>> boxes);
+    /// True after settle(): then answers are by the boxes as of the last refresh.
+    [[nodiscard]] bool isSettled() const noexcept { return !settled_.empty(); }
+    [[nodiscard]] bool isAsFiled() const noexcept { return isAsFiled_; }
+    [[nodiscard]] const SettledBox<Scalar>* settled() const noexcept { return settled_.data(); }
+    /// Of a settled table: the entry's box from the next refresh() on. Returns false, and does nothing, where
+    /// it leaves the box by which the entry is filed.
+    [[nodiscard]] bool moveWithin(std::uint32_t entry, const Aabb<Scalar>& box) noexcept {
+        SettledBox<Scalar>& own = settled_[entry];
+        // By number: what has just been written so would be waited for as a whole.
+        const Scalar* const low = box.min().data();
+        const Scalar* const high = box.max().data();
+        bool isWithin = true;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            // An inverted one reaches farther than its corners say.
+            isWithin &= (low[axis] >= own.filed.low[axis]) & (high[axis] <= own.filed.high[axis]) &
+                        (low[axis] <= high[axis]);
+        }
+        for (std::size_t axis = 0; isWithin && axis < 3; ++axis) {
+            own.now.low[axis] = low[axis];
+            own.now.high[axis] = high[axis];
+        }
+        return isWithin;
+    }
+    void refresh(std::uint32_t entry) noexcept;
+    void refreshAll(ParallelFor parallelFor);
+    /// Files by boxes as they are. No entry is left that was filed by another one.
+    void unsettle() noexcept;
+    /// By which the entry is filed.
+    [[nodiscard]] Aabb<Scalar> filedBox(std::uint32_t entry) const noexcept {
+        return isSettled() ? unpadded(settled_[entry].filed) : box(entry);
+    }
+
     /// Takes the entry out of every later answer. Cost: O(1); its place is reclaimed by build().
     void erase(std::uint32_t entry) noexcept;
 
@@ -101,6 +136,7 @@ public:
     }
 
     /// Says which invariant is broken, in a sentence; empty when all hold:
+    /// - A settled box lies within that by which it is filed, which is meant in what follows.
     /// - Every entry lies in the bucket of the cell of its min corner.
     /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
     /// - Buckets partition the entries in order.
@@ -123,6 +159,7 @@ private:
                     std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups);
     [[nodiscard]] std::optional<SortedBucket<Scalar>> sortedAlong(
         std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] bool isSorted(const SortedBucket<Scalar>& sorted) const;
     [[nodiscard]] bool areSorted() const;
     void computeRows();
     void computeFlatExtents();
@@ -140,6 +177,9 @@ private:
     std::vector<Row> rowOfEntry_;  // where a level is hashed
     std::vector<SortedBucket<Scalar>> sortedBuckets_;
     std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
+
+    std::vector<SettledBox<Scalar>> settled_;  // by entry, or empty
+    bool isAsFiled_ = false;                   // settled, and not refreshed yet
 
     std::vector<std::uint32_t> buckets_;   // scratch of build()
     std::vector<std::uint32_t> longOnes_;  // the same

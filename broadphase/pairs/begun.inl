@@ -6,35 +6,29 @@
 #include <broadphase/pairs/filter.inl>
 #include <broadphase/pairs/groups.inl>
 #include <broadphase/pairs/remembered.inl>
+#include <broadphase/pairs/settled.inl>
 #include <broadphase/pairs/swept.inl>
 #include <broadphase/pairs/watched.inl>
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 namespace hashphase::detail {
 
-// Where only a few share a cell, what may not pair is sooner taken out of what a search has found, where
-// it is little, than left out by the search, which has to look at the groups of all.
+// Where some that rest have moved within their slack, each mobile one is looked for among them.
 template <class Scalar>
-bool isCrowded(const Table<Scalar>& table) {
-    constexpr std::uint32_t kFew = 32;
-    return mostTogether(table) > kFew;
+[[nodiscard]] bool isRestAstir(const PairState<Scalar>& pairs) noexcept {
+    return pairs.proxies.settledChanged > 0;
 }
 
-template <class IsOut>
-void takeOut(PairList& candidates, const IsOut& isOut) {
-    IndexPair* const begin = candidates.resize(candidates.size());
-    IndexPair* const end = std::remove_if(begin, begin + candidates.size(), isOut);
-    static_cast<void>(candidates.resize(static_cast<std::size_t>(end - begin)));
-}
-
-// Candidates of a mobile one that has not changed and a resting one are not looked for again.
+// Candidates of a mobile one that has not changed and a resting one that has not are not looked for again.
 template <class Scalar>
 void carryToRest(PairState<Scalar>& pairs, bool someSettled) {
     const Population<Scalar>& proxies = pairs.proxies;
     WatchedPairs& watched = pairs.watched;
     watched.carried.clear();
-    if (pairs.tables.resting.size() == 0) {
+    if (pairs.tables.resting.size() == 0 || isRestAstir(pairs)) {
         return;
     }
     const auto carryIfKept = [&](std::uint32_t place, std::uint32_t resting) {
@@ -59,53 +53,71 @@ void carryToRest(PairState<Scalar>& pairs, bool someSettled) {
 
 template <class Scalar>
 void joinMobile(PairState<Scalar>& pairs, ParallelFor parallelFor) {
-    const Population<Scalar>& proxies = pairs.proxies;
     const Table<Scalar>& table = pairs.tables.mobile;
     PairList& found = pairs.watched.amongMobile;
-    found.clear();
-    const GroupKinds::Set kinds = pairs.frame.mobileKinds;
-    const bool someRefuse = proxies.groupKinds.refuse(kinds, kinds);
-    const bool areToldApart = someRefuse && isCrowded(table);
-    KernelCost cost;
-    joinTable(table, parallelFor, pairs.scratch.parts, found, cost,
-              areToldApart ? proxies.groups.data() : nullptr, proxies.groupKinds.together(kinds));
-    if (someRefuse && !areToldApart) {
-        takeOut(found, [&](const IndexPair& pair) {
-            return proxies.doRefuse(table.proxyIndex(pair.a), table.proxyIndex(pair.b));
-        });
-    }
-    pairs.cost.boxesTested += cost.boxesTested;
+    joinAllowed(pairs, table, pairs.frame.mobileKinds, found, parallelFor);
     for (const auto [a, b] : selectApart<Scalar>(pairs.scratch, found.pairs(), table.order().data(),
                                                  pairs.frame.before.data(), parallelFor)) {
         pairs.listToAsk(pairKey(table.proxyIndex(a), table.proxyIndex(b)));
     }
 }
 
-// Selects all that overlap and may pair: a place in changedEntries and an entry at rest.
+// Appends (i, entry) for what `count` boxes, of these proxies of such kinds, overlap in a table and may pair with.
 template <class Scalar>
-void queryResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
+void queryAllowed(PairState<Scalar>& pairs, const Columns<Scalar>& boxes,
+                  std::span<const std::uint32_t> ofProxies, GroupKinds::Set kinds,
+                  const Table<Scalar>& table, GroupKinds::Set tableKinds, PairList& found,
+                  ParallelFor parallelFor) {
     const Population<Scalar>& proxies = pairs.proxies;
-    const Table<Scalar>& resting = pairs.tables.resting;
-    SearchScratch<Scalar>& scratch = pairs.scratch;
-    const GroupKinds::Set restingKinds = pairs.tables.restingKinds;
-    const bool someRefuse = proxies.groupKinds.refuse(pairs.frame.changedKinds, restingKinds);
-    const bool areToldApart = someRefuse && isCrowded(resting);
-    listChanged(pairs);
-    const GroupsView view{proxies.groups.data(), scratch.searchedIndices.data(),
-                          proxies.groupKinds.together(restingKinds)};
+    const bool someRefuse = proxies.groupKinds.refuse(kinds, tableKinds);
+    const bool areToldApart = someRefuse && isCrowded(table);
+    const GroupsView view{proxies.groups.data(), ofProxies.data(),
+                          proxies.groupKinds.together(tableKinds)};
     KernelCost cost;
-    scratch.selected.clear();
-    queryTable(resting, scratch.bounds.columns(), scratch.bounds.size(), parallelFor, scratch.parts,
-               scratch.selected, cost, areToldApart ? &view : nullptr);
+    found.clear();
+    queryTable(table, boxes, static_cast<std::uint32_t>(ofProxies.size()), parallelFor,
+               pairs.scratch.parts, found, cost, areToldApart ? &view : nullptr);
     pairs.cost.boxesTested += cost.boxesTested;
     if (someRefuse && !areToldApart) {
-        takeOut(scratch.selected, [&](const IndexPair& pair) {
-            return proxies.doRefuse(scratch.searchedIndices[pair.a], resting.proxyIndex(pair.b));
+        takeOut(found, [&](const IndexPair& pair) {
+            return proxies.doRefuse(ofProxies[pair.a], table.proxyIndex(pair.b));
         });
     }
 }
 
-// What changed against the resting proxies.
+// Selects all that overlap and may pair: entries of the mobile table, of what is searched, and of the resting
+// one. The few look for the many.
+template <class Scalar>
+void selectAgainstResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
+    const Population<Scalar>& proxies = pairs.proxies;
+    const Table<Scalar>& mobile = pairs.tables.mobile;
+    const Table<Scalar>& resting = pairs.tables.resting;
+    SearchScratch<Scalar>& scratch = pairs.scratch;
+    const bool isAstir = isRestAstir(pairs);
+    const GroupKinds::Set kinds = isAstir ? pairs.frame.mobileKinds : pairs.frame.changedKinds;
+    const auto isSearched = [&](std::uint32_t proxyIndex) {
+        return isAstir || proxies.changedNow(proxyIndex);
+    };
+    constexpr std::size_t kFew = 4;
+    if (kFew * resting.size() < mobile.size()) {
+        queryAllowed(pairs, resting.columns(), resting.proxyIndices(), pairs.tables.restingKinds,
+                     mobile, pairs.frame.mobileKinds, scratch.selected, parallelFor);
+        takeOut(scratch.selected,
+                [&](const IndexPair& pair) { return !isSearched(mobile.proxyIndex(pair.b)); });
+        for (IndexPair& pair : scratch.selected.all()) {
+            std::swap(pair.a, pair.b);
+        }
+        return;
+    }
+    listSearched(pairs, isSearched);
+    queryAllowed(pairs, scratch.bounds.columns(), std::span(scratch.searchedIndices), kinds,
+                 resting, pairs.tables.restingKinds, scratch.selected, parallelFor);
+    for (IndexPair& pair : scratch.selected.all()) {
+        pair.a = scratch.searchedEntries[pair.a];
+    }
+}
+
+// What may have met a resting proxy.
 template <class Scalar>
 void findAgainstResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     const Table<Scalar>& mobile = pairs.tables.mobile;
@@ -115,16 +127,16 @@ void findAgainstResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     if (resting.size() == 0) {
         return;
     }
-    queryResting(pairs, parallelFor);
+    selectAgainstResting(pairs, parallelFor);
     const bool isShifted = !pairs.proxies.boxesAtUpdate.empty();
-    for (const auto [changed, restingEntry] : pairs.scratch.selected.pairs()) {
-        const std::uint32_t entry = pairs.scratch.changedEntries[changed];
+    for (const auto [entry, restingEntry] : pairs.scratch.selected.pairs()) {
         const std::uint32_t proxyIndex = resting.proxyIndex(restingEntry);
         watched.toResting.push({entry, proxyIndex});
         // Not by their indices: these boxes are at hand.
         const PaddedBox<Scalar>& before = pairs.frame.before[mobile.order()[entry]];
-        const Aabb<Scalar> other =
-            isShifted ? pairs.proxies.boxAtUpdate(proxyIndex) : resting.box(restingEntry);
+        const Aabb<Scalar> other = isShifted || pairs.proxies.changedNow(proxyIndex)
+                                       ? pairs.proxies.boxAtUpdate(proxyIndex)
+                                       : resting.box(restingEntry);
         if (!overlaps(unpadded(before), other)) {
             pairs.listToAsk(pairKey(mobile.proxyIndex(entry), proxyIndex));
         }
@@ -149,6 +161,9 @@ template <class Scalar>
         pairs.scratch.entryOf[order[entry]] = entry;
     }
     carryToRest(pairs, someSettled);
+    for (const PairKey key : pairs.watched.settled.begun) {
+        pairs.listToAsk(key);
+    }
     joinMobile(pairs, parallelFor);
     findAgainstResting(pairs, parallelFor);
     if (pairs.proxies.areRegrouped) {

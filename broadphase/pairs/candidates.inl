@@ -143,7 +143,7 @@ void findNewCandidates(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
     const Reading<Scalar> reading = pairs.store.beginReading();
     for (const Filing<Scalar>& filing : reading.filings()) {
         forEachTouching(pairs.scratch, *filing.table, box, [&](std::uint32_t other) {
-            if (pairs.store.isFiled(other, reading)) {
+            if (pairs.store.standsIn(filing, other, reading)) {
                 add(other);
             }
         });

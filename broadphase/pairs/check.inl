@@ -47,6 +47,33 @@ template <class Scalar>
     return watched == expected;
 }
 
+// Compares what is said of the settled ones with their boxes.
+template <class Scalar>
+[[nodiscard]] bool areSettledRight(const PairState<Scalar>& pairs) {
+    const auto haveSlack = [&](PairKey key) {
+        return pairs.areAtRest(key) && !pairs.areStill(key);
+    };
+    const Table<Scalar>& table = pairs.tables.resting;
+    const SettledPairs& settled = pairs.watched.settled;
+    std::vector<PairKey> listed;
+    for (std::size_t i = 0; i < settled.pairs.size(); ++i) {
+        const auto [a, b] = settled.pairs.pairs()[i];
+        const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
+        if (settled.overlapped[i] != 0 && haveSlack(key)) {
+            listed.push_back(key);
+        }
+    }
+    std::sort(listed.begin(), listed.end());
+    std::vector<PairKey> expected;
+    forEachOverlap(pairs, [&](std::uint32_t a, std::uint32_t b) {
+        if (haveSlack(pairKey(a, b))) {
+            expected.push_back(pairKey(a, b));
+        }
+    });
+    std::sort(expected.begin(), expected.end());
+    return listed == expected;
+}
+
 template <class Scalar>
 [[nodiscard]] std::string validateRemembered(const PairState<Scalar>& pairs) {
     const std::span<const PairKey> keys = pairs.known.pile->pairs.keys();
@@ -71,6 +98,9 @@ template <class Scalar>
     if (!areWatchedAll(pairs, overlapping) && !pairs.store.mustRebuildPairs) {
         return "The watched candidates are the overlapping ones that may pair and of which one is "
                "mobile, each once: broken.";
+    }
+    if (!areSettledRight(pairs) && !pairs.store.mustRebuildPairs) {
+        return "The candidates of settled proxies that overlap are listed so, each once: broken.";
     }
     if (known.count + known.refusedCount() != overlapping + swept.size() + known.kept.size()) {
         return "count() is the number of overlapping and swept candidates that may pair, less the "

@@ -4,6 +4,7 @@
 // Which candidates overlap no more.
 
 #include <broadphase/pairs/groups.inl>
+#include <broadphase/pairs/settled.inl>
 #include <broadphase/pairs/watched.inl>
 
 #include <broadphase/core/prefetch.hpp>
@@ -108,6 +109,7 @@ void findEnded(PairState<Scalar>& pairs, ParallelFor parallelFor) {
         return;  // see findBegunOfPairs()
     }
     findEndedOfWatched(pairs, parallelFor);
+    findTurned(pairs, parallelFor);
     for (const PairKey key : pairs.known.immediate.keys()) {
         pairs.endIfSeparated(key);
     }

@@ -21,7 +21,7 @@ void listRefusedAgain(PairState<Scalar>& pairs) {
     for (const PairKey key : known.refused.keys()) {
         if (!pairs.mayPairNow(key)) {
             pairs.call.lapsed.push_back(key);
-        } else if (pairs.areAtRest(key)) {
+        } else if (pairs.areStill(key)) {
             rested.push_back(key);
         } else if ((pairs.proxies.changedNow(firstIndex(key)) ||
                     pairs.proxies.changedNow(secondIndex(key))) &&

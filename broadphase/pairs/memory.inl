@@ -25,6 +25,7 @@ void releaseUnusedMemory(PairState<Scalar>& pairs) noexcept {
                pairs.immediateChanges.died);
     pairs.scratch = {};
     pairs.watched.carried = {};
+    freeArrays(pairs.watched.settled.turned, pairs.watched.settled.begun);
     pairs.lastUpdate.releaseMemory();
     // What is kept.
     KnownPairs& known = pairs.known;

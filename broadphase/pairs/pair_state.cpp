@@ -16,6 +16,7 @@ PairState<Scalar>::PairState(Store<Scalar>& itsStore, Sweeping<Scalar>* itsSweep
 template <class Scalar>
 PairState<Scalar>::~PairState() {
     store.endSweeps();
+    store.maySettleWithSlack = true;
     store.hasPairs = false;
 }
 

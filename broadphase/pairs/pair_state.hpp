@@ -27,6 +27,31 @@
 
 namespace hashphase::detail {
 
+/// The candidates of two that are settled, of which one has slack: the pairs of entries of their table whose
+/// filed boxes overlap and that may pair. They stand as long as the table is not filed anew; entries may have
+/// left it.
+struct SettledPairs {
+    PairList pairs;
+    std::vector<std::uint8_t> overlapped;  // at the last update; by pair
+    std::uint64_t filing = 0;              // Tables::restingFilings when they were found
+    // The numbers of each entry's pairs, and where they begin; made when few entries change.
+    std::vector<std::uint32_t> pairsOf;
+    std::vector<std::uint32_t> firstOf;
+    std::vector<std::uint32_t> turned;  // scratch
+    std::vector<PairKey> begun;         // scratch
+
+    void clear() noexcept {
+        pairs.clear();
+        overlapped.clear();
+        firstOf.clear();
+    }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return pairs.memoryBytes() + overlapped.capacity() + begun.capacity() * sizeof(PairKey) +
+               (pairsOf.capacity() + firstOf.capacity() + turned.capacity()) *
+                   sizeof(std::uint32_t);
+    }
+};
+
 /// The candidates that overlapped at the last update and of which one is mobile, the refused ones included.
 /// `a`, and among the mobile ones `b`, is a place in Population::mobile, or, once a frame has filed anew, an
 /// entry of the mobile table; both are in spatial order, so that boxes of a candidate are near in memory.
@@ -34,9 +59,11 @@ struct WatchedPairs {
     PairList amongMobile;
     PairList toResting;  // b is a proxyIndex
     PairList carried;    // scratch
+    SettledPairs settled;
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return amongMobile.memoryBytes() + toResting.memoryBytes() + carried.memoryBytes();
+        return amongMobile.memoryBytes() + toResting.memoryBytes() + carried.memoryBytes() +
+               settled.memoryBytes();
     }
 };
 
@@ -46,14 +73,14 @@ struct SearchScratch {
     PairList selected;
     PairParts parts;
     std::vector<std::uint32_t> entryOf;  // of places in Population::mobile, in the mobile table
-    std::vector<std::uint32_t> changedEntries;   // entries of the mobile table that changed
+    std::vector<std::uint32_t> searchedEntries;  // of the mobile table
     std::vector<std::uint32_t> searchedIndices;  // proxies of these, or of some
     BoxColumns<Scalar> bounds;                   // of what is looked for in a table
     std::vector<char> isNamed;                   // by index
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return selected.memoryBytes() + parts.memoryBytes() + bounds.memoryBytes() +
-               (entryOf.capacity() + changedEntries.capacity() + searchedIndices.capacity()) *
+               (entryOf.capacity() + searchedEntries.capacity() + searchedIndices.capacity()) *
                    sizeof(std::uint32_t) +
                isNamed.capacity();
     }
@@ -108,6 +135,11 @@ struct HASHPHASE_BROADPHASE_EXPORT PairState {
     }
     [[nodiscard]] bool areAtRest(PairKey key) const noexcept {
         return proxies.rests(firstIndex(key)) && proxies.rests(secondIndex(key));
+    }
+    /// At rest, and not to move without waking.
+    [[nodiscard]] bool areStill(PairKey key) const noexcept {
+        return areAtRest(key) && !proxies.records[firstIndex(key)].hasSlack &&
+               !proxies.records[secondIndex(key)].hasSlack;
     }
     [[nodiscard]] bool mayPairNow(PairKey key) const noexcept {
         return proxies.mayPairNow(firstIndex(key), secondIndex(key));

@@ -74,12 +74,12 @@ template <class Scalar>
     const Table<Scalar>& mobile = pairs.tables.mobile;
     SearchScratch<Scalar>& scratch = pairs.scratch;
     listChanged(pairs);
-    const std::size_t count = scratch.changedEntries.size();
+    const std::size_t count = scratch.searchedEntries.size();
     const std::size_t size = sampleSize(pairs.tables.resting, count);
     scratch.bounds.clear();
     scratch.searchedIndices.clear();
     for (std::size_t i = 0; i < size; ++i) {
-        const std::uint32_t entry = scratch.changedEntries[count * i / size];
+        const std::uint32_t entry = scratch.searchedEntries[count * i / size];
         scratch.searchedIndices.push_back(mobile.proxyIndex(entry));
         scratch.bounds.push(mobile.box(entry));
     }
@@ -161,6 +161,9 @@ void rememberPairs(PairState<Scalar>& pairs) {
     pile.lookInterval = std::max(pile.lookInterval, 1U);
     pile.updatesUntilLook = pile.lookInterval;
     forgetWatched(pairs);
+    // What is settled is not looked for among what has changed.
+    pairs.store.wakeSettled();
+    pairs.store.maySettleWithSlack = false;
 }
 
 // By a sample first.
@@ -200,6 +203,7 @@ void rememberRefusedIfFew(PairState<Scalar>& pairs) {
     }
     known.pile->hasPairs = false;
     known.pile->pairs = {};
+    pairs.store.maySettleWithSlack = true;
 }
 
 // Whether the refused ones have become few again is looked at after 1, 2, 4, 8 ... updates: it may cost as much

@@ -12,15 +12,20 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
                 ParallelFor parallelFor) {
     store.releaseAfterPeak();
     try {
+        store.followSettled();
         if (pairs != nullptr) {
             beginUpdate(*pairs);
         }
-        for (bool isDone = store.cost.changed == 0; !isDone;) {
-            store.stage(parallelFor);
+        for (bool isDone = !store.mustFile(); !isDone;) {
+            store.stage(parallelFor, Store<Scalar>::StageFor::update);
             if (pairs != nullptr) {
                 findEnded(*pairs, parallelFor);
             }
             const bool someSettled = store.settleIdle(parallelFor);
+            if (pairs != nullptr) {
+                listSettled(*pairs, parallelFor);
+            }
+            store.refreshSettled(parallelFor);
             store.fileMobile(parallelFor);
             isDone = pairs == nullptr || findBegun(*pairs, someSettled, filter, parallelFor);
             if (!isDone) {
@@ -38,7 +43,7 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
     if (pairs != nullptr) {
         publish(*pairs);
     }
-    if (store.cost.changed > 0) {
+    if (store.mustFile()) {
         store.relistMobile();
     }
     return store.endUpdate();

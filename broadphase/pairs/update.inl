@@ -39,7 +39,7 @@ void recover(PairState<Scalar>& pairs) {
     KnownPairs& known = pairs.known;
     known.refused.reserve(known.refusedCount());
     pairs.lastUpdate.forget();
-    store.stage(serialFor);
+    store.stage(serialFor, Store<Scalar>::StageFor::repair);
     Table<Scalar>& table = pairs.lastUpdate.scratchTable();
     const ProxyGroups* const groups = pairs.proxies.groupsOfAllAtUpdate();
     table.build(pairs.proxies.mobile, pairs.frame.before, store.fixedSizes(), serialFor, groups);
@@ -115,7 +115,7 @@ void publish(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-
     for (const PairKey key : pairs.call.lapsed) {
         known.forgetRefused(key);
     }
-    if (pairs.store.cost.changed > 0) {
+    if (pairs.store.mustFile()) {
         known.swept.advance();
         pairs.lastUpdate.take(pairs.tables.mobile);
     }

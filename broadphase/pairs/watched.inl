@@ -7,6 +7,7 @@
 
 #include <broadphase/search/join.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,6 +33,40 @@ std::span<const IndexPair> selectApart(SearchScratch<Scalar>& scratch,
     return scratch.selected.pairs();
 }
 
+// Where only a few share a cell, what may not pair is sooner taken out of what a search has found, where
+// it is little, than left out by the search, which has to look at the groups of all.
+template <class Scalar>
+bool isCrowded(const Table<Scalar>& table) {
+    constexpr std::uint32_t kFew = 32;
+    return mostTogether(table) > kFew;
+}
+
+template <class IsOut>
+void takeOut(PairList& candidates, const IsOut& isOut) {
+    IndexPair* const begin = candidates.resize(candidates.size());
+    IndexPair* const end = std::remove_if(begin, begin + candidates.size(), isOut);
+    static_cast<void>(candidates.resize(static_cast<std::size_t>(end - begin)));
+}
+
+// Lists every two entries of the table, which have such kinds of groups, that overlap and may pair.
+template <class Scalar>
+void joinAllowed(PairState<Scalar>& pairs, const Table<Scalar>& table, GroupKinds::Set kinds,
+                 PairList& found, ParallelFor parallelFor) {
+    const Population<Scalar>& proxies = pairs.proxies;
+    const bool someRefuse = proxies.groupKinds.refuse(kinds, kinds);
+    const bool areToldApart = someRefuse && isCrowded(table);
+    KernelCost cost;
+    found.clear();
+    joinTable(table, parallelFor, pairs.scratch.parts, found, cost,
+              areToldApart ? proxies.groups.data() : nullptr, proxies.groupKinds.together(kinds));
+    if (someRefuse && !areToldApart) {
+        takeOut(found, [&](const IndexPair& pair) {
+            return proxies.doRefuse(table.proxyIndex(pair.a), table.proxyIndex(pair.b));
+        });
+    }
+    pairs.cost.boxesTested += cost.boxesTested;
+}
+
 // Calls visit(key) for each candidate that was watched, before the frame files anew.
 template <class Scalar, class Visit>
 void forEachWatched(const PairState<Scalar>& pairs, const Visit& visit) {
@@ -44,22 +79,27 @@ void forEachWatched(const PairState<Scalar>& pairs, const Visit& visit) {
     }
 }
 
-// Lists the entries of the mobile table that have changed, their proxies and their boxes.
-template <class Scalar>
-void listChanged(PairState<Scalar>& pairs) {
+// Lists the entries of the mobile table whose proxies are to be searched, these proxies and their boxes.
+template <class Scalar, class IsSearched>
+void listSearched(PairState<Scalar>& pairs, const IsSearched& isSearched) {
     const Table<Scalar>& table = pairs.tables.mobile;
     SearchScratch<Scalar>& scratch = pairs.scratch;
-    scratch.changedEntries.clear();
+    scratch.searchedEntries.clear();
     scratch.searchedIndices.clear();
     scratch.bounds.clear();
     for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
         const std::uint32_t proxyIndex = table.proxyIndex(entry);
-        if (pairs.proxies.changedNow(proxyIndex)) {
-            scratch.changedEntries.push_back(entry);
+        if (isSearched(proxyIndex)) {
+            scratch.searchedEntries.push_back(entry);
             scratch.searchedIndices.push_back(proxyIndex);
             scratch.bounds.push(table.box(entry));
         }
     }
+}
+
+template <class Scalar>
+void listChanged(PairState<Scalar>& pairs) {
+    listSearched(pairs, [&](std::uint32_t index) { return pairs.proxies.changedNow(index); });
 }
 
 // Finds all candidates that are to be watched, in the tables as they are.

@@ -32,9 +32,8 @@ struct Grid<Scalar>::VisitReader {
     std::span<const Region> regions;  // one, unless they have bounds()
     std::span<Collector> collectors;
     QueryCost& cost;
-    // Where nothing waits, and nothing is changed meanwhile, all that the tables list is filed
-    // there.
-    bool isAllFiled = false;
+    // All that the tables list is filed there as it is, and nothing is changed meanwhile.
+    bool doAllStand = false;
     bool mayChange = false;
 
     /// Reads the tables. Returns false when a single collector wants no more.
@@ -46,7 +45,7 @@ struct Grid<Scalar>::VisitReader {
         } else {
             const detail::QueryColumns<Scalar> bounds(regions);
             return std::ranges::all_of(
-                filings, [&](const Filing& f) { return readCells(*f.table, bounds.columns()); });
+                filings, [&](const Filing& f) { return readCells(f, bounds.columns()); });
         }
     }
 
@@ -71,13 +70,13 @@ struct Grid<Scalar>::VisitReader {
     }
 
 private:
-    bool readCells(const detail::Table<Scalar>& table, const detail::Columns<Scalar>& bounds) {
+    bool readCells(const Filing& filing, const detail::Columns<Scalar>& bounds) {
         detail::KernelCost walk;
         const auto take = [&](std::span<const detail::IndexPair> found) {
-            return offerEntries(table, found);
+            return offerEntries(filing, found);
         };
         const auto count = static_cast<std::uint32_t>(regions.size());
-        const bool goesOn = detail::searchBoxes(table, bounds, count, take, walk);
+        const bool goesOn = detail::searchBoxes(*filing.table, bounds, count, take, walk);
         addCost(walk);
         return goesOn;
     }
@@ -89,8 +88,8 @@ private:
         if (!(collectors[0].limit() >= 0)) {
             return false;
         }
-        const bool mayHaveLeft = (!reading.isFresh && !store.proxies.waiting.empty()) ||
-                                 (filing.isResting && store.tables.restingErased > 0);
+        const bool mayHaveLeft =
+            !store.doAllStand(reading) || (filing.isResting && store.tables.restingErased > 0);
         const auto take = [&](std::span<const std::uint32_t> proxyIndices) {
             const auto zero = [](std::uint32_t) { return Scalar(0); };
             return mayHaveLeft
@@ -102,13 +101,14 @@ private:
         };
         detail::KernelCost walk;
         const bool goesOn = detail::searchVolume(*filing.table, regions[0].volume(), take, walk) &&
-                            readList(*filing.table, walk);
+                            readList(filing, walk);
         addCost(walk);
         return goesOn;
     }
 
     // Of what has no cells, the region's key decides.
-    bool readList(const detail::Table<Scalar>& table, detail::KernelCost& walk) {
+    bool readList(const Filing& filing, detail::KernelCost& walk) {
+        const detail::Table<Scalar>& table = *filing.table;
         if (table.size() == 0) {
             return true;
         }
@@ -116,7 +116,7 @@ private:
         walk.boxesTested += list.count();
         for (std::uint32_t entry = list.firstEntry; entry < list.lastEntry; ++entry) {
             const detail::IndexPair found{0, entry};
-            if (!offerEntries(table, {&found, 1})) {
+            if (!offerEntries(filing, {&found, 1})) {
                 return false;
             }
         }
@@ -137,8 +137,8 @@ private:
     }
 
     // Pairs of a region's number and an entry that overlaps the region's bounds.
-    bool offerEntries(const detail::Table<Scalar>& table,
-                      std::span<const detail::IndexPair> found) {
+    bool offerEntries(const Filing& filing, std::span<const detail::IndexPair> found) {
+        const detail::Table<Scalar>& table = *filing.table;
         std::uint64_t hits = 0;  // no collector writes here
         bool goesOn = true;
         for (std::size_t k = 0; k < found.size() && goesOn; ++k) {
@@ -149,8 +149,7 @@ private:
                 key = regions[i].key(table.box(entry));
             }
             const std::uint32_t proxyIndex = table.proxyIndex(entry);
-            if (!detail::isWanted(key, collector) ||
-                !(isAllFiled || store.isFiled(proxyIndex, reading))) {
+            if (!detail::isWanted(key, collector) || !(doAllStand || isThere(filing, proxyIndex))) {
                 continue;
             }
             // What is fresh has no list of what the collector has changed since: boxes are asked for
@@ -221,9 +220,9 @@ template <class Region, class Collector>
 QueryCost Grid<Scalar>::visitTogether(const Reading& reading, std::span<const Region> regions,
                                       std::span<Collector> collectors, bool mayChange) const {
     QueryCost cost;
-    const bool isAllFiled = !mayChange && (reading.isFresh || store_.proxies.waiting.empty());
+    const bool doAllStand = !mayChange && store_.doAllStand(reading);
     VisitReader<Region, Collector> reader{store_, reading,    regions,  collectors,
-                                          cost,   isAllFiled, mayChange};
+                                          cost,   doAllStand, mayChange};
     reader.readTables(reading.filings());
     for (std::size_t i = 0; i < regions.size() && !reading.isFresh; ++i) {
         if (collectors[i].limit() >= 0) {

@@ -227,13 +227,13 @@ bool sweepPart(const Level<Scalar>& level, const Query& query, const SortedBucke
     if (run.last <= run.first || !query.findsAny(sorted)) {
         return true;
     }
-    const Scalar* const column = level.columns[sorted.axis];
+    const SortKeys<Scalar> keys{level.sortKeys[sorted.axis], level.sortStride};
     const Scalar low = query.columns[sorted.axis][query.number];
     const Scalar high = query.columns[sorted.axis + 3][query.number];
     const Run longOnes = {highest(run.first, sorted.firstLong), run.last};
     run.last = lowest(run.last, sorted.firstLong);
-    const Run near = {firstNear(sorted, column, run.first, run.last, low),
-                      endOfNear(column, run.first, run.last, high)};
+    const Run near = {firstNear(sorted, keys, run.first, run.last, low),
+                      endOfNear(keys, run.first, run.last, high)};
     return scanAll<kIsDense>(level, query, longOnes, row, found, tested) &&
            scanAll<kIsDense>(level, query, near, row, found, tested);
 }

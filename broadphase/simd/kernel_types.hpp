@@ -37,6 +37,13 @@ template <class Scalar>
     return result;
 }
 
+/// A box that moves within the one by which it is filed.
+template <class Scalar>
+struct SettledBox {
+    PaddedBox<Scalar> filed;
+    PaddedBox<Scalar> now;
+};
+
 /// Two entries whose boxes overlap, or two numbers of whatever else was asked about.
 struct IndexPair {
     std::uint32_t a;
@@ -223,6 +230,12 @@ struct Kernels {
     std::size_t (*selectApart)(const IndexPair* pairs, std::size_t count,
                                const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
                                IndexPair* apart);
+
+    /// Writes the numbers of those of the pairs first to last to `turned`, which has room for all, whose
+    /// boxes overlap now though overlapped[i] is 0, or do not though it is 1. Returns how many.
+    std::size_t (*selectTurned)(const IndexPair* pairs, const std::uint8_t* overlapped,
+                                std::uint32_t first, std::uint32_t last,
+                                const SettledBox<Scalar>* boxes, std::uint32_t* turned);
 
     /// Counts the neighbours of the agents first to last. This and the next two return how many
     /// neighbours there are in all.

@@ -45,6 +45,7 @@ template <class Scalar>
 class PairList {
 public:
     [[nodiscard]] std::span<const IndexPair> pairs() const noexcept { return {data_.get(), size_}; }
+    [[nodiscard]] std::span<IndexPair> all() noexcept { return {data_.get(), size_}; }
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     void clear() noexcept { size_ = 0; }
 

@@ -103,6 +103,19 @@ std::size_t selectApart(const IndexPair* pairs, std::size_t count, const std::ui
 }
 
 template <class Scalar>
+std::size_t selectTurned(const IndexPair* pairs, const std::uint8_t* overlapped,
+                         std::uint32_t first, std::uint32_t last, const SettledBox<Scalar>* boxes,
+                         std::uint32_t* turned) {
+    std::size_t selected = 0;
+    for (std::uint32_t i = first; i < last; ++i) {
+        const bool overlap = !isApart(boxes[pairs[i].a].now, boxes[pairs[i].b].now);
+        turned[selected] = i;
+        selected += (overlap ? 1 : 0) != overlapped[i] ? 1 : 0;
+    }
+    return selected;
+}
+
+template <class Scalar>
 constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinLevel<Scalar>,
                                    &queryLevel<Scalar>,
@@ -114,6 +127,7 @@ constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinList<Scalar>,
                                    &findRange<Scalar>,
                                    &selectApart<Scalar>,
+                                   &selectTurned<Scalar>,
                                    &countWithin<Scalar>,
                                    &countGroupsWithin<Scalar>,
                                    &listWithin<Scalar>};

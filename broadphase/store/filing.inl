@@ -17,10 +17,28 @@
 namespace hashphase::detail {
 namespace {
 
+constexpr std::size_t kFewIdle = 32;
+
 // Resting proxies are refiled when this many want to join or have left: often enough to be of use,
 // and seldom enough to be cheap for each of them.
 std::size_t worthRefiling(std::size_t restingCount) {
-    return std::max<std::size_t>(32, restingCount / 8);
+    return std::max<std::size_t>(kFewIdle, restingCount / 8);
+}
+
+// Of all coordinates.
+template <class Scalar>
+Scalar longestMove(const Aabb<Scalar>& now, const Aabb<Scalar>& before) {
+    return std::max((now.min() - before.min()).cwiseAbs().maxCoeff(),
+                    (now.max() - before.max()).cwiseAbs().maxCoeff());
+}
+
+template <class Scalar>
+PaddedBox<Scalar> grownBy(PaddedBox<Scalar> box, Scalar by) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] -= by;
+        box.high[axis] += by;
+    }
+    return box;
 }
 
 }  // namespace
@@ -28,14 +46,18 @@ std::size_t worthRefiling(std::size_t restingCount) {
 // Indices that are near each other in space are near each other
 // in proxies.mobile, but anywhere in proxies.records.
 template <class Scalar>
-void Store<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
+void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
     constexpr std::size_t kGrain = 4096;
     constexpr std::size_t kAhead = 12;
     const std::size_t count = proxies.mobile.size();
     frame.now.resize(count);
     frame.before.resize(hasPairs ? count : 0);
     ensureCapacity(frame.proxyIndices, proxies.nanCount);  // for relistMobile()
+    if (frame.someAreCalm && proxies.tremors.size() < proxies.records.size()) {
+        proxies.tremors.resize(proxies.records.size());
+    }
     frame.idleCount = 0;
+    frame.someAreCalm = false;
     const bool someRefuse = proxies.groupKinds.someRefuse();  // else nobody asks for kinds
     frame.mobileKinds = 0;
     frame.changedKinds = 0;
@@ -47,12 +69,14 @@ void Store<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
             if (i + kAhead < count) {
                 prefetch(&proxies.records[proxies.mobile[i + kAhead]]);
             }
-            const Record& record = proxies.records[proxies.mobile[i]];
-            frame.now[i] = padded(isForQueries ? record.box : proxies.standingBox(record));
+            Record& record = proxies.records[proxies.mobile[i]];
+            frame.now[i] =
+                padded(what == StageFor::queries ? record.box : proxies.standingBox(record));
             if (hasPairs) {
                 frame.before[i] = padded(proxies.boxAtUpdate(proxies.mobile[i]));
             }
-            idleCount += isIdle(record) ? 1 : 0;
+            const bool isCalm = what == StageFor::update && observe(proxies.mobile[i], record);
+            idleCount += isCalm || isIdle(record) ? 1 : 0;
             if (someRefuse) {
                 const GroupKinds::Set kind = GroupKinds::bit(record.kind);
                 mobileKinds |= kind;
@@ -65,21 +89,86 @@ void Store<Scalar>::stage(ParallelFor parallelFor, bool isForQueries) {
     });
 }
 
+// A proxy is calm while each of its moves is less than a quarter of the most slack that it may have.
+template <class Scalar>
+bool Store<Scalar>::observe(std::uint32_t proxyIndex, Record& record) noexcept {
+    const bool isChanged = record.changedAt == proxies.updateNumber;
+    const Scalar moved = isChanged ? longestMove(record.box, record.before) : Scalar(0);
+    const bool isCalm = 4 * moved < mostSlack(record.box) && record.residency == Residency::mobile;
+    if (!isCalm) {
+        if (record.isCalm) {
+            record.isCalm = false;
+        }
+        return false;
+    }
+    frame.someAreCalm.store(true, std::memory_order_relaxed);
+    if (proxyIndex >= proxies.tremors.size()) {
+        return false;  // until the next update
+    }
+    constexpr auto kFades = Scalar(0.875);
+    Tremor<Scalar>& tremor = proxies.tremors[proxyIndex];
+    tremor.reach = std::max(moved, record.isCalm ? tremor.reach * kFades : Scalar(0));
+    tremor.calmCount = record.isCalm
+                           ? static_cast<std::uint16_t>(std::min(tremor.calmCount + 1, 0xffff))
+                           : std::uint16_t{0};
+    record.isCalm = true;
+    return maySettle(proxyIndex, record);
+}
+
+template <class Scalar>
+bool Store<Scalar>::maySettle(std::uint32_t proxyIndex, const Record& record) const noexcept {
+    if (!record.isCalm || proxyIndex >= proxies.tremors.size()) {
+        return false;
+    }
+    const Tremor<Scalar>& tremor = proxies.tremors[proxyIndex];
+    return tremor.calmCount >= std::uint64_t{config.updatesBeforeRest} * tremor.patience &&
+           slackOf(proxyIndex) > 0 && !record.box.isEmpty();
+}
+
+template <class Scalar>
+Scalar Store<Scalar>::mostSlack(const Box& box) const noexcept {
+    if (!maySettleWithSlack) {
+        return 0;
+    }
+    if (config.slack) {
+        return static_cast<Scalar>(*config.slack);
+    }
+    constexpr Scalar kShareOfMeanEdge = 4;
+    return box.sizes().sum() / (3 * kShareOfMeanEdge);
+}
+
+template <class Scalar>
+Scalar Store<Scalar>::slackOf(std::uint32_t proxyIndex) const noexcept {
+    const Scalar most = mostSlack(proxies.records[proxyIndex].box);
+    const Tremor<Scalar>& tremor = proxies.tremors[proxyIndex];
+    return config.slack ? most : std::min(most, tremor.reach * tremor.slackFactor);
+}
+
 template <class Scalar>
 bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
     const std::size_t filedCount = tables.resting.size() - tables.restingErased;
+    constexpr std::size_t kFiling = 2;  // costs as much as so many updates of mobile ones
+    tables.idleUpdates += frame.idleCount;
     if (std::max<std::uint32_t>(frame.idleCount, tables.restingErased) <
-        worthRefiling(filedCount)) {
+            worthRefiling(filedCount) &&
+        tables.idleUpdates < kFiling * (kFewIdle + filedCount + frame.idleCount)) {
         return false;
     }
     // Those that stay at rest come first, then those that join.
     ensureCapacity(frame.proxyIndices, filedCount + frame.idleCount);
     ensureCapacity(frame.boxes, filedCount + frame.idleCount);
     listResting();
+    frame.stayedCount = static_cast<std::uint32_t>(frame.boxes.size());
     for (std::size_t i = 0; frame.idleCount > 0 && i < proxies.mobile.size(); ++i) {
         Record& record = proxies.records[proxies.mobile[i]];
-        if (record.residency == Residency::mobile && isIdle(record)) {
+        if (record.residency != Residency::mobile) {
+            continue;
+        }
+        const bool isIdle = this->isIdle(record);
+        if (isIdle || maySettle(proxies.mobile[i], record)) {
             record.residency = Residency::resting;
+            record.hasSlack = !isIdle;
+            proxies.settledChanged += isIdle ? 0 : 1;
             frame.proxyIndices.push_back(proxies.mobile[i]);
             frame.boxes.push_back(frame.now[i]);
             frame.now[i] = padded(nanBox<Scalar>());
@@ -104,8 +193,27 @@ void Store<Scalar>::listResting() {
 
 template <class Scalar>
 void Store<Scalar>::fileResting(ParallelFor parallelFor) {
-    tables.resting.file(frame.proxyIndices, frame.boxes, fixedSizes(), parallelFor,
-                        proxies.groupsOfAll());
+    const auto hasSlack = [this](std::uint32_t proxyIndex) {
+        return proxies.records[proxyIndex].hasSlack;
+    };
+    if (std::ranges::none_of(frame.proxyIndices, hasSlack)) {
+        tables.resting.file(frame.proxyIndices, frame.boxes, fixedSizes(), parallelFor,
+                            proxies.groupsOfAll());
+    } else {
+        frame.grown = frame.boxes;
+        for (std::size_t i = 0; i < frame.grown.size(); ++i) {
+            const std::uint32_t proxyIndex = frame.proxyIndices[i];
+            if (hasSlack(proxyIndex)) {
+                frame.grown[i] = grownBy(frame.boxes[i], slackOf(proxyIndex));
+            }
+        }
+        tables.resting.file(frame.proxyIndices, frame.grown, fixedSizes(), parallelFor,
+                            proxies.groupsOfAll());
+        tables.resting.settle(frame.boxes);
+    }
+    ++tables.restingFilings;
+    tables.idleUpdates = 0;
+    tables.settledAt = proxies.updateNumber;
     tables.restingKinds = 0;
     for (std::uint32_t entry = 0; entry < tables.resting.size(); ++entry) {
         proxies.records[tables.resting.proxyIndex(entry)].listedAt = entry;
@@ -113,6 +221,48 @@ void Store<Scalar>::fileResting(ParallelFor parallelFor) {
     }
     tables.restingErased = 0;
     cost.filed += tables.resting.size();
+}
+
+template <class Scalar>
+void Store<Scalar>::followSettled() {
+    constexpr std::size_t kMany = 4;
+    constexpr std::size_t kAhead = 12;
+    const std::vector<std::uint32_t>& waiting = proxies.waiting;
+    Table<Scalar>& table = tables.resting;
+    frame.areManySettledChanged = proxies.settledChanged > table.size() / kMany;
+    frame.changedSettled.clear();
+    for (std::size_t i = 0; proxies.settledChanged > 0 && i < waiting.size(); ++i) {
+        if (i + kAhead < waiting.size()) {
+            const Record& later = proxies.records[waiting[i + kAhead]];
+            prefetch(later.hasSlack ? table.settled() + later.listedAt : nullptr);
+        }
+        const Record& record = proxies.records[waiting[i]];
+        if (!record.hasSlack) {
+            continue;
+        }
+        if (!table.moveWithin(record.listedAt, record.box)) {
+            noteLeft(waiting[i]);
+            wake(waiting[i]);
+        } else if (!frame.areManySettledChanged) {
+            frame.changedSettled.push_back(record.listedAt);
+        }
+    }
+}
+
+// In the order of the table, or where they are few in that of the changes, which is any.
+template <class Scalar>
+void Store<Scalar>::refreshSettled(ParallelFor parallelFor) {
+    Table<Scalar>& table = tables.resting;
+    if (!table.isSettled()) {
+        return;
+    }
+    if (table.isAsFiled() || frame.areManySettledChanged) {
+        table.refreshAll(parallelFor);
+        return;
+    }
+    for (const std::uint32_t entry : frame.changedSettled) {
+        table.refresh(entry);
+    }
 }
 
 template <class Scalar>
@@ -189,6 +339,7 @@ UpdateCost Store<Scalar>::endUpdate() noexcept {
         finest = std::min(finest, filing.table->finestCellSize());
     }
     proxies.woken.clear();
+    proxies.settledChanged = 0;
     proxies.boxesAtUpdate.clear();
     proxies.indicesAtUpdate.clear();
     if (std::exchange(proxies.areRegrouped, false)) {
@@ -226,10 +377,12 @@ void Store<Scalar>::wakeAll() noexcept {
         Record& record = proxies.records[proxyIndex];
         record.residency =
             record.residency == Residency::resting ? Residency::mobile : record.residency;
+        record.hasSlack = false;
     }
     for (std::uint32_t proxyIndex = 0; proxyIndex < proxies.records.size(); ++proxyIndex) {
         if (proxies.records[proxyIndex].residency == Residency::resting) {
             proxies.records[proxyIndex].residency = Residency::mobile;
+            proxies.records[proxyIndex].hasSlack = false;
             proxies.listMobile(proxyIndex);
             proxies.woken.push_back(proxyIndex);
         }

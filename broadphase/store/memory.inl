@@ -77,6 +77,7 @@ void Store<Scalar>::releaseMemory() noexcept {
     if (tables.sweeping != nullptr && tables.sweeping->size() == 0) {
         tables.sweeping.reset();
     }
+    wakeSettled();
     if (tables.restingErased > 0) {  // and is still listed in the table
         try {
             listResting();
@@ -90,11 +91,12 @@ void Store<Scalar>::releaseMemory() noexcept {
     } catch (const std::bad_alloc&) {  // they are kept
     }
     shrink(proxies.records, proxies.reservedCount);
+    freeArrays(proxies.tremors);
     shrink(proxies.groups, proxies.groups.empty() ? 0 : 2 * proxies.records.capacity());
     shrink(proxies.mobile, std::max(listedCount(), proxies.reservedCount));
     shrink(proxies.woken, proxies.mobile.capacity());
     shrink(proxies.waiting, proxies.mobile.capacity());
-    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
+    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes, frame.grown);
     if (proxies.boxesAtUpdate.empty()) {
         freeArrays(proxies.boxesAtUpdate);
         proxies.indicesAtUpdate = {};

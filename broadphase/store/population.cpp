@@ -123,7 +123,8 @@ void Population<Scalar>::clear() noexcept {
     }
     mobileAtUpdate = 0;
     listNumber = 1;
-    freeArrays(sweeping, boxesAtUpdate, groups);
+    settledChanged = 0;
+    freeArrays(sweeping, boxesAtUpdate, groups, tremors);
     indicesAtUpdate = {};
     groupKinds = {};
 }

@@ -8,12 +8,12 @@
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/group_kinds.hpp>
 #include <broadphase/export.hpp>
+#include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/proxy_groups.hpp>
 #include <broadphase/proxy_id.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include <broadphase/core/hide_macros.hpp>
@@ -25,15 +25,9 @@ inline constexpr std::uint32_t kNoProxyIndex = ~std::uint32_t{0};
 enum class Residency : std::uint8_t {
     nowhere,  // no proxy
     mobile,  // listed in Population::mobile, and filed with the mobile ones unless it waits or is NaN
-    resting,   // filed with the resting ones
+    resting,   // filed with the resting ones, perhaps by a larger box, within which it moves
     sweeping,  // as mobile, but filed apart: its way, and not its box, makes its pairs
 };
-
-template <class Scalar>
-[[nodiscard]] Aabb<Scalar> nanBox() {
-    const auto nan = Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
-    return {nan, nan};
-}
 
 /// All about a proxy, by its index, in one cache line for single precision and two for double.
 template <class Scalar>
@@ -54,6 +48,17 @@ struct alignas(16 * sizeof(Scalar)) Record {
     bool restsAtOnce : 1 = false;
     bool isNan : 1 = false;        // has a NaN; of a proxy alive
     bool isImmediate : 1 = false;  // a pair of the proxy's was reported since the last update
+    bool hasSlack : 1 = false;     // it rests, and is filed by a larger box
+    bool isCalm : 1 = false;       // in the last update that saw it mobile
+};
+
+/// How a proxy trembles. By it the slack is chosen with which it is filed when it settles.
+template <class Scalar>
+struct Tremor {
+    Scalar reach = 0;              // about the longest move of a coordinate in the last updates [m]
+    std::uint16_t calmCount = 0;   // updates in which it was calm, one after another
+    std::uint8_t slackFactor = 2;  // slack by reach
+    std::uint8_t patience = 1;     // how many times as long it has to be calm before it settles
 };
 
 /// Indices without a proxy, one after the other by Record::listedAt.
@@ -68,11 +73,14 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     using Box = Aabb<Scalar>;
 
     std::vector<Record<Scalar>> records;  // by index
-    std::size_t size = 0;                 // proxies alive
+    std::vector<Tremor<Scalar>>
+        tremors;           // the same; as long as records when an update has seen them
+    std::size_t size = 0;  // proxies alive
     std::size_t nanCount = 0;
-    std::size_t reservedCount = 0;      // of proxies, by Grid::reserve()
-    std::uint64_t number;               // see Grid::populationNumber()
-    std::uint32_t updateNumber = 1;     // of the update that ends the present frame
+    std::size_t reservedCount = 0;   // of proxies, by Grid::reserve()
+    std::uint64_t number;            // see Grid::populationNumber()
+    std::uint32_t updateNumber = 1;  // of the update that ends the present frame
+    std::size_t settledChanged = 0;  // of those with slack, since the last update; perhaps too many
     std::uint32_t firstGeneration = 0;  // of new indices; even
     bool nanReported = false;
     bool areRegrouped = false;    // groups of some, since the last update
@@ -211,7 +219,8 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     /// Begins to count updates at a small number: see Record::changedAt.
     void countUpdatesAnew(std::uint32_t updatesBeforeRest) noexcept;
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return records.capacity() * sizeof(records[0]) + groups.capacity() * sizeof(groups[0]) +
+        return records.capacity() * sizeof(records[0]) + tremors.capacity() * sizeof(tremors[0]) +
+               groups.capacity() * sizeof(groups[0]) +
                (mobile.capacity() + woken.capacity() + waiting.capacity() + sweeping.capacity()) *
                    sizeof(mobile[0]) +
                boxesAtUpdate.capacity() * sizeof(Box) + indicesAtUpdate.memoryBytes();

@@ -32,7 +32,7 @@ Store<Scalar>& writable(const Store<Scalar>& store) {
 template <class Scalar>
 std::uint64_t Store<Scalar>::worthFiling() const noexcept {
     constexpr std::uint64_t kThirdOfFiling = 3;  // entries of the list, for each proxy
-    return 1024 + kThirdOfFiling * tables.mobile.size();
+    return 1024 + kThirdOfFiling * (tables.mobile.size() + proxies.settledChanged);
 }
 
 template <class Scalar>
@@ -95,7 +95,7 @@ void Store<Scalar>::mendTables() const {
     auto& self = writable(*this);
     const std::lock_guard lock(self.tables.mutex);
     if (tables.mustRefileMobile.load(std::memory_order_relaxed)) {
-        self.stage(serialFor);
+        self.stage(serialFor, StageFor::repair);
         self.fileMobile(serialFor);
         if (!hasPairs) {
             self.relistMobile();
@@ -122,8 +122,16 @@ void Store<Scalar>::fileFresh(Lock how) {
     if (tables.fresh == nullptr) {
         tables.fresh = std::make_unique<FiledTable<Scalar>>();
     }
-    stage(serialFor, true);
-    tables.fresh->file(proxies.mobile, frame.now, fixedSizes(), serialFor, proxies.groupsOfAll());
+    stage(serialFor, StageFor::queries);
+    frame.proxyIndices = proxies.mobile;
+    for (std::size_t i = 0; proxies.settledChanged > 0 && i < proxies.waiting.size(); ++i) {
+        if (proxies.rests(proxies.waiting[i])) {
+            frame.proxyIndices.push_back(proxies.waiting[i]);
+            frame.now.push_back(padded(proxies.records[proxies.waiting[i]].box));
+        }
+    }
+    tables.fresh->file(frame.proxyIndices, frame.now, fixedSizes(), serialFor,
+                       proxies.groupsOfAll());
     ++tables.filingCount;
     cost.filed += tables.fresh->size();
     tables.isFresh.store(true, std::memory_order_release);
@@ -135,6 +143,11 @@ void Store<Scalar>::takeFresh() noexcept {
     tables.isFresh.store(false, std::memory_order_relaxed);
     if (QueryScope::isWithin(this)) {
         return;
+    }
+    for (std::size_t i = 0; proxies.settledChanged > 0 && i < proxies.waiting.size(); ++i) {
+        if (proxies.rests(proxies.waiting[i])) {
+            wake(proxies.waiting[i]);  // now it is filed with the mobile ones
+        }
     }
     tables.mobile.swap(*tables.fresh);
     if (tables.fresh->memoryBytes() == 0) {  // the first filing of all

@@ -16,6 +16,7 @@ namespace hashphase::detail {
 template <class Scalar>
 std::size_t Store<Scalar>::shiftOrigin(const Point& shift) {
     beforeChange();
+    wakeSettled();  // the boxes by which they are filed would be rounded
     if (hasPairs && proxies.boxesAtUpdate.empty()) {
         keepBoxesAtUpdate(shift);
     }

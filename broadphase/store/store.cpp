@@ -26,6 +26,12 @@ const GridConfig& checked(const GridConfig& config) {
     return config;
 }
 
+// Who stays within its slack for so many updates has paid for being settled; for so many more slack would not pay.
+constexpr std::uint32_t kWorthSettling = 16;
+constexpr std::uint32_t kWorthMoreSlack = 64;
+constexpr std::uint8_t kMostSlackFactor = 32;
+constexpr std::uint8_t kMostPatience = 16;
+
 // Grids have those above, of 2^32 numbers each.
 std::uint64_t firstPopulationNumber() noexcept {
     static std::atomic<std::uint64_t> gridCount{0};
@@ -62,6 +68,9 @@ std::uint32_t Store<Scalar>::add(const Box& box, bool restsAtOnce, const ProxyGr
     ++record.generation;
     record.residency = Residency::mobile;
     proxies.listMobile(proxyIndex);
+    if (proxyIndex < proxies.tremors.size()) {
+        proxies.tremors[proxyIndex] = {};
+    }
     ++proxies.size;
     ++proxies.number;
     markChanged(proxyIndex);
@@ -126,7 +135,8 @@ void Store<Scalar>::clear() {
     tables.clear();
     mustRebuildPairs = false;
     cost = {};
-    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
+    frame.someAreCalm = false;
+    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes, frame.grown);
     tables.cellSize = config.cellSize > 0 ? static_cast<Scalar>(config.cellSize) : Scalar(1);
 }
 
@@ -153,9 +163,46 @@ void Store<Scalar>::markChanged(std::uint32_t proxyIndex) noexcept {
     if (record.residency == Residency::resting) {
         wake(proxyIndex);
     }
+    listChange(proxyIndex);
+}
+
+template <class Scalar>
+void Store<Scalar>::listChange(std::uint32_t proxyIndex) noexcept {
+    Record& record = proxies.records[proxyIndex];
     if (!proxies.isWaiting(record)) {
         record.listedIn = proxies.listNumber;
         proxies.waiting.push_back(proxyIndex);
+    }
+}
+
+template <class Scalar>
+void Store<Scalar>::markMoved(std::uint32_t proxyIndex) noexcept {
+    beforeChange();
+    Record& record = proxies.records[proxyIndex];
+    countChange(record);
+    if (record.residency == Residency::resting) {
+        if (record.hasSlack) {
+            ++proxies.settledChanged;
+        } else {
+            wake(proxyIndex);
+        }
+    }
+    listChange(proxyIndex);
+}
+
+// Who leaves soon gets more slack the next time, or if there is no more, waits longer.
+template <class Scalar>
+void Store<Scalar>::noteLeft(std::uint32_t proxyIndex) noexcept {
+    const std::uint32_t stayed = proxies.updateNumber - tables.settledAt;
+    Tremor<Scalar>& tremor = proxies.tremors[proxyIndex];
+    const Scalar slack = tremor.reach * tremor.slackFactor;
+    const bool isThereMore =
+        tremor.slackFactor < kMostSlackFactor && slack < mostSlack(proxies.records[proxyIndex].box);
+    if (isThereMore && stayed < kWorthMoreSlack) {
+        tremor.slackFactor = static_cast<std::uint8_t>(2 * tremor.slackFactor);
+    } else if (stayed < kWorthSettling) {
+        tremor.patience = std::min<std::uint8_t>(2 * tremor.patience, kMostPatience);
+        tremor.calmCount = 0;
     }
 }
 
@@ -177,8 +224,24 @@ void Store<Scalar>::wake(std::uint32_t proxyIndex) noexcept {
     tables.resting.erase(record.listedAt);
     ++tables.restingErased;
     record.residency = Residency::mobile;
+    record.hasSlack = false;
     proxies.listMobile(proxyIndex);
     proxies.woken.push_back(proxyIndex);
+}
+
+template <class Scalar>
+void Store<Scalar>::wakeSettled() noexcept {
+    if (!tables.resting.isSettled()) {
+        return;
+    }
+    for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
+        if (proxies.rests(proxyIndex) && proxies.records[proxyIndex].hasSlack) {
+            wake(proxyIndex);
+            listChange(proxyIndex);
+            ++proxies.settledChanged;
+        }
+    }
+    tables.resting.unsettle();
 }
 
 template <class Scalar>
@@ -252,20 +315,21 @@ std::string Store<Scalar>::validate() const {
     const Reading reading = tables.reading();
     // How often each proxy stands where a query would look for it.
     std::vector<std::uint32_t> timesFound(proxies.records.size(), 0);
-    for (const auto& [table, isResting] : reading.filings()) {
-        if (std::string error = table->validate(); !error.empty()) {
+    for (const Filing& filing : reading.filings()) {
+        const FiledTable<Scalar>& table = *filing.table;
+        if (std::string error = table.validate(); !error.empty()) {
             return error;
         }
-        if (std::string error = table->validateTree(); !error.empty()) {
+        if (std::string error = table.validateTree(); !error.empty()) {
             return error;
         }
-        for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
-            const std::uint32_t proxyIndex = table->proxyIndex(entry);
-            if (hasNan(table->box(entry)) || !isFiled(proxyIndex, reading)) {
+        for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
+            const std::uint32_t proxyIndex = table.proxyIndex(entry);
+            if (hasNan(table.box(entry)) || !standsIn(filing, proxyIndex, reading)) {
                 continue;
             }
             ++timesFound[proxyIndex];
-            if (!isSameBits(table->box(entry), proxies.records[proxyIndex].box)) {
+            if (!isSameBits(table.box(entry), proxies.records[proxyIndex].box)) {
                 return "A filed proxy's entry has the proxy's box: broken.";
             }
         }

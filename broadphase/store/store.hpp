@@ -30,18 +30,27 @@ struct Motions;
 template <class Scalar>
 struct Frame {
     std::vector<PaddedBox<Scalar>> now;
-    std::vector<PaddedBox<Scalar>> before;  // as of the last update; where there are pairs
-    std::atomic<std::uint32_t> idleCount{0};
+    std::vector<PaddedBox<Scalar>> before;    // as of the last update; where there are pairs
+    std::atomic<std::uint32_t> idleCount{0};  // of those that may rest
+    std::atomic<bool> someAreCalm{false};     // and change
     // Which kinds of groups there are among the mobile ones, and those that have changed; perhaps more.
     std::atomic<GroupKinds::Set> mobileKinds{0};
     std::atomic<GroupKinds::Set> changedKinds{0};
 
+    // Entries of the settled ones that have changed, unless they are many.
+    std::vector<std::uint32_t> changedSettled;
+    bool areManySettledChanged = false;
+    std::uint32_t stayedCount =
+        0;  // Table::order() of what rested before the resting table was filed
+
     std::vector<std::uint32_t> proxyIndices;  // scratch: of what is filed, or has a NaN
     std::vector<PaddedBox<Scalar>> boxes;     // scratch: of what is filed
+    std::vector<PaddedBox<Scalar>> grown;     // scratch: by which it is filed, where it has slack
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return (now.capacity() + before.capacity() + boxes.capacity()) * sizeof(boxes[0]) +
-               proxyIndices.capacity() * sizeof(proxyIndices[0]);
+        return (now.capacity() + before.capacity() + boxes.capacity() + grown.capacity()) *
+                   sizeof(boxes[0]) +
+               (proxyIndices.capacity() + changedSettled.capacity()) * sizeof(proxyIndices[0]);
     }
 };
 
@@ -62,6 +71,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     Motions<Scalar>* firstMotions = nullptr;
     PeakWatch peaks;
     bool hasPairs = false;
+    bool maySettleWithSlack = true;
     bool mustRebuildPairs = false;  // by wakeAll(): what pairs watch is to be found anew
 
     explicit Store(const GridConfig& itsConfig);
@@ -75,7 +85,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void move(std::uint32_t proxyIndex, const Box& box) {
         Record& record = proxies.records[proxyIndex];
         if (!isSameBits(record.box, box)) {
-            markChanged(proxyIndex);
+            markMoved(proxyIndex);
             setBox(record, box);
         }
     }
@@ -83,11 +93,17 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void clear();
     void setGroups(std::uint32_t proxyIndex, const ProxyGroups& groups);
 
-    /// To be called before every change of a proxy's box.
+    /// To be called before every change of a proxy's box. What rests wakes.
     void markChanged(std::uint32_t proxyIndex) noexcept;
+    /// The same before a move: what has slack wakes only where it leaves it, which the update will see.
+    void markMoved(std::uint32_t proxyIndex) noexcept;
     /// The same where the box is not changed.
     void countChange(Record& record) noexcept;
+    void listChange(std::uint32_t proxyIndex) noexcept;
+    void noteLeft(std::uint32_t proxyIndex) noexcept;
     void wake(std::uint32_t proxyIndex) noexcept;
+    /// All that are filed by larger boxes than their own.
+    void wakeSettled() noexcept;
     void setBox(Record& record, const Box& box);
     void markNan(Record& record, bool isNan);
 
@@ -104,8 +120,19 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
 
     // --- The passes of an update, see step.hpp ---------------------------------------------------
 
+    /// Tells their table where the settled ones are now; those that have left their slack wake.
+    void followSettled();
     /// Copies the mobile boxes side by side.
-    void stage(ParallelFor parallelFor, bool isForQueries = false);
+    enum class StageFor : std::uint8_t { update, repair, queries };
+    void stage(ParallelFor parallelFor, StageFor what);
+    /// Watches how a mobile proxy moves. Returns whether it may settle with slack.
+    [[nodiscard]] bool observe(std::uint32_t proxyIndex, Record& record) noexcept;
+    [[nodiscard]] bool maySettle(std::uint32_t proxyIndex, const Record& record) const noexcept;
+    /// How far it may move at most from where it is filed [m]; 0 for not at all.
+    [[nodiscard]] Scalar mostSlack(const Box& box) const noexcept;
+    [[nodiscard]] Scalar slackOf(std::uint32_t proxyIndex) const noexcept;
+    /// Searches of their table see the settled ones where they are now.
+    void refreshSettled(ParallelFor parallelFor);
     /// Idle proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
     /// be worth filing the resting ones anew. Returns whether any did.
     [[nodiscard]] bool settleIdle(ParallelFor parallelFor);
@@ -126,6 +153,11 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
         return record.changedAt != proxies.updateNumber && !record.isNan &&
                (record.restsAtOnce ||
                 proxies.updateNumber - record.changedAt > config.updatesBeforeRest);
+    }
+
+    /// Whether an update has anything to file.
+    [[nodiscard]] bool mustFile() const noexcept {
+        return cost.changed > 0 || !proxies.woken.empty();
     }
 
     // --- What queries read -----------------------------------------------------------------------
@@ -151,15 +183,18 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void forgetErased() noexcept;
     void dropList() noexcept;
 
-    /// Whether a proxy that is listed in a table is still filed there.
-    [[nodiscard]] bool isFiled(std::uint32_t proxyIndex, const Reading& reading) const noexcept {
-        const Record& record = proxies.records[proxyIndex];
-        return record.residency != Residency::nowhere &&
-               (reading.isFresh || !proxies.isWaiting(record));
-    }
+    /// Whether a proxy that is listed in a table is still filed there, with its box as it is.
     [[nodiscard]] bool standsIn(const Filing& filing, std::uint32_t proxyIndex,
                                 const Reading& reading) const noexcept {
-        return proxies.rests(proxyIndex) == filing.isResting && isFiled(proxyIndex, reading);
+        const Record& record = proxies.records[proxyIndex];
+        return record.residency != Residency::nowhere &&
+               (proxies.isWaiting(record)
+                    ? reading.isFresh && !filing.isResting
+                    : (record.residency == Residency::resting) == filing.isResting);
+    }
+    /// Whether that is so of all that the tables list and that is not erased.
+    [[nodiscard]] bool doAllStand(const Reading& reading) const noexcept {
+        return proxies.waiting.empty() || (reading.isFresh && proxies.settledChanged == 0);
     }
     /// Calls visit(ProxyId, box) for every proxy alive whose box has no NaN, in about the order of space.
     template <class Visit>
@@ -200,11 +235,12 @@ template <class Scalar>
 template <class Visit>
 void Store<Scalar>::forEachFiled(const Visit& visit) const {
     const Reading reading = beginReading();
-    for (const auto& [table, isResting] : reading.filings()) {
-        for (std::uint32_t entry = 0; entry < table->size(); ++entry) {
-            const Box box = table->box(entry);
-            if (isFiled(table->proxyIndex(entry), reading) && !hasNan(box)) {
-                visit(proxies.idOf(table->proxyIndex(entry)), box);
+    for (const Filing& filing : reading.filings()) {
+        const Table<Scalar>& table = *filing.table;
+        for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
+            const Box box = table.box(entry);
+            if (standsIn(filing, table.proxyIndex(entry), reading) && !hasNan(box)) {
+                visit(proxies.idOf(table.proxyIndex(entry)), box);
             }
         }
     }

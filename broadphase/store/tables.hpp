@@ -84,6 +84,9 @@ struct Tables {
     std::mutex mutex;  // of queries that file, or grow trees
 
     std::uint32_t restingErased = 0;  // entries
+    std::uint32_t settledAt = 0;      // Population::updateNumber when `resting` was filed
+    std::uint64_t restingFilings = 0;
+    std::uint64_t idleUpdates = 0;  // of mobile proxies that might rest, since then
     GroupKinds::Set restingKinds = 0;
     Scalar cellSize = 1;                        // see Grid::cellSize()
     std::atomic<std::uint64_t> filingCount{0};  // a query may file while others ask
@@ -110,7 +113,8 @@ struct Tables {
         }
         sweeping.reset();
         fresh.reset();
-        restingErased = 0;
+        restingErased = settledAt = 0;
+        idleUpdates = 0;
         waitingRead.store(0, std::memory_order_relaxed);
         mustRefileMobile.store(false, std::memory_order_relaxed);
         isFresh.store(false, std::memory_order_relaxed);

@@ -61,13 +61,14 @@ template <class Scalar>
 void BoxTree::readBoxes(const Table<Scalar>& table, const Level<Scalar>& level) {
     boxes_.clear();
     boxes_.reserve(level.count());
-    const Columns<Scalar> columns = table.columns();
     for (std::uint32_t entry = level.firstEntry; entry < level.lastEntry; ++entry) {
+        const Aabb<Scalar> filed = table.filedBox(entry);
         Box box{};
-        bool isNan = false;
+        bool isNan = hasNan(table.box(entry));
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double a = static_cast<double>(columns[axis][entry]) - origin_[axis];
-            const double b = static_cast<double>(columns[axis + 3][entry]) - origin_[axis];
+            const auto at = static_cast<Eigen::Index>(axis);
+            const double a = static_cast<double>(filed.min()[at]) - origin_[axis];
+            const double b = static_cast<double>(filed.max()[at]) - origin_[axis];
             isNan |= a != a || b != b;
             // Bullet's slab test hits inverted boxes, too, within the box the right way round.
             box.low[axis] = roundedDown(std::min(a, b));

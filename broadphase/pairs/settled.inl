@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Candidates of two that are settled, and move within the boxes by which they are filed.
+
+#include <broadphase/pairs/watched.inl>
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+
+namespace hashphase::detail {
+
+// Lists the numbers of each entry's pairs.
+inline void listPairsOf(SettledPairs& settled, std::size_t entryCount) {
+    settled.firstOf.assign(entryCount + 1, 0);
+    for (const auto [a, b] : settled.pairs.pairs()) {
+        ++settled.firstOf[a];
+        ++settled.firstOf[b];
+    }
+    std::inclusive_scan(settled.firstOf.begin(), settled.firstOf.end(), settled.firstOf.begin());
+    settled.pairsOf.resize(2 * settled.pairs.size());
+    for (auto i = static_cast<std::uint32_t>(settled.pairs.size()); i-- > 0;) {
+        const auto [a, b] = settled.pairs.pairs()[i];
+        settled.pairsOf[--settled.firstOf[a]] = i;
+        settled.pairsOf[--settled.firstOf[b]] = i;
+    }
+}
+
+// Selects the pairs that have come to overlap or to be apart; of those of few entries perhaps some twice.
+template <class Scalar>
+void selectTurned(PairState<Scalar>& pairs) {
+    const Kernels<Scalar>& kernel = kernels<Scalar>();
+    const Table<Scalar>& table = pairs.tables.resting;
+    SettledPairs& settled = pairs.watched.settled;
+    const IndexPair* const all = settled.pairs.pairs().data();
+    const auto count = static_cast<std::uint32_t>(settled.pairs.size());
+    if (pairs.frame.areManySettledChanged) {
+        settled.turned.resize(count);
+        settled.turned.resize(kernel.selectTurned(all, settled.overlapped.data(), 0, count,
+                                                  table.settled(), settled.turned.data()));
+        pairs.cost.pairsWatched += count;
+        return;
+    }
+    settled.turned.clear();
+    if (settled.firstOf.empty() && !pairs.frame.changedSettled.empty()) {
+        listPairsOf(settled, table.size());
+    }
+    for (const std::uint32_t entry : pairs.frame.changedSettled) {
+        for (std::uint32_t k = settled.firstOf[entry]; k < settled.firstOf[entry + 1]; ++k) {
+            const std::uint32_t i = settled.pairsOf[k];
+            std::uint32_t turned = 0;
+            if (kernel.selectTurned(all, settled.overlapped.data(), i, i + 1, table.settled(),
+                                    &turned) > 0) {
+                settled.turned.push_back(i);
+            }
+        }
+        pairs.cost.pairsWatched += settled.firstOf[entry + 1] - settled.firstOf[entry];
+    }
+}
+
+// Finds which of the pairs have begun, which findBegun() asks about, and ended.
+template <class Scalar>
+void findTurned(PairState<Scalar>& pairs, ParallelFor /*parallelFor*/) {
+    const Table<Scalar>& table = pairs.tables.resting;
+    SettledPairs& settled = pairs.watched.settled;
+    settled.begun.clear();
+    if (!table.isSettled() || pairs.proxies.settledChanged == 0) {
+        return;
+    }
+    selectTurned(pairs);
+    for (const std::uint32_t i : settled.turned) {
+        const auto [a, b] = settled.pairs.pairs()[i];
+        const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
+        const bool overlapNow = pairs.areAtRest(key) && pairs.overlapNow(key);
+        if (settled.overlapped[i] == (overlapNow ? 1 : 0)) {
+            continue;  // found twice
+        }
+        settled.overlapped[i] = overlapNow ? 1 : 0;
+        if (overlapNow) {
+            settled.begun.push_back(key);
+        } else if (pairs.areAtRest(key)) {
+            pairs.call.ended.push_back(key);
+        }
+    }
+}
+
+// When their table has been filed anew, and has not been refreshed: lists what overlaps by the boxes by which it
+// is filed, may pair, and has slack. What rested before has been dealt with by findTurned(); of what joins,
+// which was mobile until now, pairs that ended are found.
+template <class Scalar>
+void listSettled(PairState<Scalar>& pairs, ParallelFor parallelFor) {
+    const Population<Scalar>& proxies = pairs.proxies;
+    const Table<Scalar>& table = pairs.tables.resting;
+    SettledPairs& settled = pairs.watched.settled;
+    if (!table.isSettled()) {
+        settled.clear();
+        return;
+    }
+    if (settled.filing == pairs.tables.restingFilings) {
+        return;
+    }
+    settled.clear();
+    settled.filing = pairs.tables.restingFilings;
+    joinAllowed(pairs, table, pairs.tables.restingKinds, settled.pairs, parallelFor);
+    const auto hasSlack = [&](std::uint32_t entry) {
+        return proxies.records[table.proxyIndex(entry)].hasSlack;
+    };
+    takeOut(settled.pairs,
+            [&](const IndexPair& pair) { return !hasSlack(pair.a) && !hasSlack(pair.b); });
+    const auto hasJoined = [&](std::uint32_t entry) {
+        return table.order()[entry] >= pairs.frame.stayedCount;
+    };
+    settled.overlapped.reserve(settled.pairs.size());
+    for (const auto [a, b] : settled.pairs.pairs()) {
+        const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
+        const bool overlapNow = pairs.overlapNow(key);
+        settled.overlapped.push_back(overlapNow ? 1 : 0);
+        if (overlapNow && (hasJoined(a) || hasJoined(b)) &&
+            !proxies.overlappedAtUpdate(firstIndex(key), secondIndex(key))) {
+            settled.begun.push_back(key);
+        }
+    }
+}
+
+}  // namespace hashphase::detail
