@@ -94,7 +94,8 @@ template <class Scalar>
 bool Store<Scalar>::observe(std::uint32_t proxyIndex, Record& record) noexcept {
     const bool isChanged = record.changedAt == proxies.updateNumber;
     const Scalar moved = isChanged ? longestMove(record.box, record.before) : Scalar(0);
-    const bool isCalm = 4 * moved < mostSlack(record.box) && record.residency == Residency::mobile;
+    const bool isCalm =
+        record.residency == Residency::mobile && !record.isNan && 4 * moved < mostSlack(record.box);
     if (!isCalm) {
         if (record.isCalm) {
             record.isCalm = false;

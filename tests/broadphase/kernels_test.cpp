@@ -73,9 +73,40 @@ protected:
         return found;
     }
 
+    /// Of pairs that overlapped, but for every third one of which the opposite is said.
+    static std::vector<std::uint32_t> turnedOf(std::span<const IndexPair> pairs,
+                                               const Table<Scalar>& table,
+                                               const std::vector<PaddedBox<Scalar>>& moved) {
+        std::vector<SettledBox<Scalar>> boxes;
+        for (const std::uint32_t i : table.order()) {
+            boxes.push_back({{}, moved[i]});
+        }
+        std::vector<std::uint8_t> overlapped;
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            overlapped.push_back(i % 3 == 0 ? 0 : 1);
+        }
+        std::vector<std::uint32_t> turned(pairs.size());
+        turned.resize(kernels<Scalar>().selectTurned(pairs.data(), overlapped.data(), 0,
+                                                     static_cast<std::uint32_t>(pairs.size()),
+                                                     boxes.data(), turned.data()));
+        std::size_t next = 0;
+        for (std::uint32_t i = 0; i < pairs.size(); ++i) {  // by the definition
+            const bool overlap =
+                overlaps(unpadded(boxes[pairs[i].a].now), unpadded(boxes[pairs[i].b].now));
+            if (overlap != (overlapped[i] != 0)) {
+                EXPECT_LT(next, turned.size());
+                EXPECT_EQ(next < turned.size() ? turned[next] : ~0U, i);
+                ++next;
+            }
+        }
+        EXPECT_EQ(next, turned.size());
+        return turned;
+    }
+
     /// What all kernels make of the boxes.
     struct Results {
         std::vector<IndexPair> joined, walked, together, onWays, apart, filed;
+        std::vector<std::uint32_t> turned;
 
         friend bool operator==(const Results&, const Results&) = default;
     };
@@ -104,7 +135,8 @@ protected:
                         copyOf(together),
                         copyOf(querySwept(table, movedTable, movedBoxes)),
                         {},
-                        {}};
+                        {},
+                        turnedOf(joined.pairs(), table, movedBoxes)};
         results.apart.resize(joined.size());
         results.apart.resize(kernels<Scalar>().selectApart(joined.pairs().data(), joined.size(),
                                                            table.order().data(), movedBoxes.data(),

@@ -72,6 +72,13 @@ TYPED_TEST(PairsInScripts, EqualBruteForceWhenTheFilterRefusesAndChangesItsMind)
     this->playAll({}, 0x5eed0002, {.recolour = 0.02}, 120, this->updateAndCheck);
 }
 
+TYPED_TEST(PairsInScripts, EqualBruteForceWithAnySlack) {
+    for (const double slack : {0.0, 0.01, 0.3, 1e30}) {
+        this->playAll({.updatesBeforeRest = 2, .slack = slack}, 0x5eed0008, {.recolour = 0.004}, 60,
+                      this->updateAndCheck);
+    }
+}
+
 TYPED_TEST(PairsInScripts, EqualBruteForceWhereEverythingComesToRestAndWakesAgain) {
     const ScriptRates rates{.fallAsleep = 0.4, .recolour = 0.004, .replace = 0.005};
     this->playAll({.updatesBeforeRest = 1}, 0x5eed0003, rates, 3 * Script<TypeParam>::kPeriod,

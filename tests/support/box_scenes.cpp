@@ -174,6 +174,32 @@ BoxScene<Scalar> pointScene() {
             }};
 }
 
+// Boxes that stay near where they are for a while, each by itself, as in a pile before it sleeps.
+template <class Scalar>
+BoxScene<Scalar> nearScene(std::string name,
+                           std::function<Aabb<Scalar>(Random&, const Aabb<Scalar>&)> nudge) {
+    BoxScene<Scalar> scene = spreadScene<Scalar>(std::move(name), 1, 0);
+    scene.nudge = std::move(nudge);
+    return scene;
+}
+
+// Each in a direction of its own, which its edges tell.
+template <class Scalar>
+Aabb<Scalar> crept(const Aabb<Scalar>& box) {
+    const Vector3<Scalar> by =
+        (box.sizes().array() - Scalar(1.5)).matrix().cwiseMax(-1).cwiseMin(1) * Scalar(0.01);
+    return {box.min() + by, box.max() + by};
+}
+
+// Grown or shrunk, and not to nothing.
+template <class Scalar>
+Aabb<Scalar> breathed(Random& random, const Aabb<Scalar>& box) {
+    const auto by = static_cast<Scalar>(random.between(-0.02, 0.02));
+    const Scalar by0 = box.sizes().minCoeff() < Scalar(0.5) ? std::abs(by) : by;
+    const Vector3<Scalar> grown = Vector3<Scalar>::Constant(by0);
+    return {box.min() - grown, box.max() + grown};
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -207,7 +233,17 @@ std::vector<BoxScene<Scalar>> allBoxScenes() {
         latticeScene<Scalar>("lattice of 0.1", 0.1, 30),
         planeScene<Scalar>(),
         pointScene<Scalar>(),
-        hostileScene<Scalar>()};
+        hostileScene<Scalar>(),
+        nearScene<Scalar>(
+            "trembling",
+            [](Random& random, const Aabb<Scalar>& box) { return shifted(random, box, 0.02); }),
+        nearScene<Scalar>("creeping", [](Random&, const Aabb<Scalar>& box) { return crept(box); }),
+        nearScene<Scalar>("breathing", breathed<Scalar>),
+        nearScene<Scalar>("trembling, and some travelling",
+                          [](Random& random, const Aabb<Scalar>& box) {
+                              const bool travels = box.sizes()[0] > Scalar(1.8);
+                              return shifted(random, box, travels ? 0.4 : 0.02);
+                          })};
     scenes[1].mobileShare = 0.1;
     return scenes;
 }

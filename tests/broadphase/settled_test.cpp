@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Zlib
+
+// Boxes that move within their slack: they stay filed, and every answer is by the boxes as they are.
+
+#include <tests/support/box_scenes.hpp>
+#include <tests/support/pair_world.hpp>
+#include <tests/support/population.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+/// Boxes of 1 to 2 m that tremble about their places, and their pairs.
+template <class Scalar>
+struct TremblingWorld : Population<Scalar, PairWorld> {
+    static constexpr std::uint32_t kCount = 300;
+
+    explicit TremblingWorld(const GridConfig& config = {}) : Population<Scalar, PairWorld>(config) {
+        this->addMany(kCount, spreadScene<Scalar>("trembling", 1, 0).draw);
+        for (const Placed<Scalar>& proxy : this->proxies) {
+            home.push_back(proxy.box);
+        }
+        this->updateAndCheck();
+    }
+
+    void tremble(std::size_t from = 0, double by = 0.01) {
+        for (std::size_t i = from; i < home.size(); ++i) {
+            this->moveTo(i, shifted(this->random, home[i], by));
+        }
+    }
+    void play(int updates, double by = 0.01) {
+        for (int i = 0; i < updates; ++i) {
+            tremble(0, by);
+            this->updateAndCheck();
+        }
+    }
+    [[nodiscard]] const UpdateCost& cost() const { return this->pairs.lastCost().grid; }
+
+    std::vector<Aabb<Scalar>> home;
+};
+
+template <class Scalar>
+class Settled : public testing::Test {};
+
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(Settled, Scalars);
+
+TYPED_TEST(Settled, StayFiledWhileTheyTremble) {
+    TremblingWorld<TypeParam> world;
+    world.play(100);
+    std::uint64_t filed = 0;
+    for (int i = 0; i < 20; ++i) {
+        world.play(1);
+        filed += world.cost().filed;
+        EXPECT_EQ(world.cost().changed, world.kCount);
+        EXPECT_GT(world.cost().resting, world.kCount * 95 / 100);
+    }
+    EXPECT_LT(filed, 20 * world.kCount / 10);
+}
+
+TYPED_TEST(Settled, StayFiledWhileTheyCreepForALongTimeAndBreathe) {
+    TremblingWorld<TypeParam> world;
+    std::uint64_t filed = 0;
+    for (int update = 0; update < 200; ++update) {
+        for (std::size_t i = 0; i < world.proxies.size(); ++i) {
+            const auto by = static_cast<TypeParam>(i % 2 == 0 ? 0.002 : -0.002);
+            Aabb<TypeParam> box = world.proxies[i].box;
+            box.min().array() += by;
+            box.max().array() += i % 3 == 0 ? by : update % 2 == 0 ? by : -by;
+            world.moveTo(i, box);
+        }
+        world.updateAndCheck();
+        filed += update < 100 ? 0 : world.cost().filed;
+    }
+    EXPECT_LT(filed, 100 * world.kCount / 4);
+}
+
+TYPED_TEST(Settled, AreFoundWhereTheyAreBeforeAndAfterTheUpdate) {
+    TremblingWorld<TypeParam> world;
+    world.play(40);
+    ASSERT_GT(world.cost().resting, 0U);
+    std::size_t found = 0;
+    for (int i = 0; i < 10; ++i) {
+        world.tremble();
+        found += world.expectQueriesLikeBruteForce(i % 3 == 0 ? 60 : 4);  // few read the list
+        world.tremble(world.kCount / 2);
+        found += world.expectQueriesLikeBruteForce(4);
+        world.updateAndCheck();
+        found += world.expectQueriesLikeBruteForce(8);
+    }
+    EXPECT_GT(found, 1000U);
+}
+
+TYPED_TEST(Settled, LeaveTheirSlackAtAnyTime) {
+    TremblingWorld<TypeParam> world;
+    world.play(40);
+    for (int update = 0; update < 60; ++update) {
+        world.tremble();
+        for (int i = 0; i < 5; ++i) {  // far away, into a small corner of its box, or bad
+            const std::size_t at = world.any();
+            const Aabb<TypeParam> box = world.proxies[at].box;
+            const Vector3<TypeParam> middle = box.center();
+            const Aabb<TypeParam> inside(middle, middle + box.sizes() / 8);
+            world.moveTo(at, i == 0   ? shifted(world.random, world.home[at], 5)
+                             : i == 1 ? inside
+                             : i == 2 ? Aabb<TypeParam>(box.max(), box.min())
+                             : i == 3 ? hostileBox<TypeParam>(world.random)
+                                      : world.home[world.any()]);
+        }
+        world.updateAndCheck();
+        world.expectQueriesLikeBruteForce(2);
+    }
+}
+
+TYPED_TEST(Settled, MeetWhatTravelsWhatStandsAndWhatComes) {
+    TremblingWorld<TypeParam> world;
+    world.addMany(60, spreadScene<TypeParam>("static", 1, 0).draw, 1);
+    std::size_t pairs = 0;
+    for (int update = 0; update < 120; ++update) {
+        world.tremble(update % 40 < 30 ? 20 : 0);  // some travel, and come to rest
+        for (std::size_t i = 0; i < 20 && update % 40 < 30; ++i) {
+            world.moveTo(i, shifted(world.random, world.proxies[i].box, 0.4));
+        }
+        if (update % 7 == 0) {
+            world.moveTo(world.home.size() + world.random.below(60),
+                         shifted(world.random, world.home[world.random.below(300)], 0.1));
+        }
+        if (update % 5 == 0) {
+            const std::size_t painted = world.random.below(300);
+            world.paint(painted, 1 + world.random.below(2));
+            world.refilter(world.proxies[painted].id);
+            world.findPairsNow(world.proxies[world.random.below(300)].id);
+        }
+        if (update % 31 == 0) {
+            const auto by = static_cast<TypeParam>(update % 2 == 0 ? 1024 : 0.1);
+            for (Aabb<TypeParam>& box : world.home) {
+                box.translate(Vector3<TypeParam>::Constant(-by));
+            }
+            world.shift(Vector3<TypeParam>::Constant(by));
+        }
+        world.updateAndCheck();
+        pairs += world.set().size();
+    }
+    EXPECT_GT(pairs, 1000U);
+}
+
+TYPED_TEST(Settled, SettleOnlyWhereThereMayBeSlack) {
+    TremblingWorld<TypeParam> never({.slack = 0});
+    never.play(40);
+    EXPECT_EQ(never.cost().resting, 0U);
+    EXPECT_EQ(never.cost().filed, never.kCount);
+
+    TremblingWorld<TypeParam> fixed({.slack = 0.1});
+    fixed.play(40);
+    EXPECT_EQ(fixed.cost().resting, fixed.kCount);
+    EXPECT_EQ(fixed.cost().filed, 0U);
+
+    TremblingWorld<TypeParam> small({.slack = 0.001});
+    small.play(40);
+    EXPECT_EQ(small.cost().resting, 0U);
+}
+
+TYPED_TEST(Settled, HoldInAGridWithoutPairs) {
+    Population<TypeParam> world;
+    world.addMany(200, spreadScene<TypeParam>("trembling", 1, 0).draw);
+    std::vector<Aabb<TypeParam>> home;
+    for (const Placed<TypeParam>& proxy : world.proxies) {
+        home.push_back(proxy.box);
+    }
+    UpdateCost cost;
+    for (int update = 0; update < 60; ++update) {
+        for (std::size_t i = 0; i < home.size(); ++i) {
+            world.moveTo(i, shifted(world.random, home[i], 0.01));
+        }
+        world.expectQueriesLikeBruteForce(2);
+        cost = world.grid.update();
+        world.expectQueriesLikeBruteForce(2);
+        ASSERT_EQ(world.grid.validate(), "");
+    }
+    EXPECT_GT(cost.resting, 180U);
+}
+
+}  // namespace
+}  // namespace hashphase::test
