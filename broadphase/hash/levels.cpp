@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/hash/levels.hpp>
 
+#include <broadphase/core/ensure_capacity.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -42,6 +44,9 @@ constexpr std::int64_t kFirstClassBits = (kLowestExponent + 1023) << 2;
 // Cells are a little larger than the largest box of their class, so that rounding does not make it
 // span a third one.
 constexpr double kMargin = 1.01;
+
+// Of sizes 1:65,536; boxes that settle are filed by more sizes than they have.
+constexpr std::size_t kUsualClasses = 64;
 
 bool has(AxisSet axes, std::size_t axis) {
     return ((axes >> axis) & 1) != 0;
@@ -207,6 +212,7 @@ SizeCensus::Range SizeCensus::range(double share) {
 
 void SizeCensus::findClasses() {
     const double floor = std::clamp(smallestUsefulCell(), kSmallestCell, kLargestCell);
+    ensureCapacity(classes_, kUsualClasses);
     classes_.assign(1, {});
     for (const Bin& bin : histogram_) {
         if (bin.count == 0) {

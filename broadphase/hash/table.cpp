@@ -184,7 +184,7 @@ void Table<Scalar>::build(std::span<const std::uint32_t> boxIndices,
         if (layout_ == nullptr) {
             layout_ = std::make_unique<LevelLayout<Scalar>>();
         }
-        settled_.clear();
+        unsettle();
         findBuckets(boxes, fixed, parallelFor);
         sortEntries(boxIndices, boxes, groups, parallelFor);
     } catch (...) {
@@ -235,7 +235,7 @@ void Table<Scalar>::linkLevels() noexcept {
         sorted += level.sortedCount;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             level.sortKeys[axis] =
-                isSettled() ? &settled_[0].filed.low[axis] : bounds_[axis].data();
+                isSettled() ? &(*settled_)[0].filed.low[axis] : bounds_[axis].data();
         }
         level.sortStride = isSettled() ? sizeof(SettledBox<Scalar>) / sizeof(Scalar) : 1;
     }
@@ -248,7 +248,9 @@ void Table<Scalar>::clear() noexcept {
     proxyIndices_.clear();
     order_.clear();
     sortedBuckets_.clear();
-    settled_.clear();
+    if (settled_ != nullptr) {
+        settled_->clear();
+    }
 }
 
 // --- Boxes that move within those by which they are filed ----------------------------------------
@@ -256,29 +258,30 @@ void Table<Scalar>::clear() noexcept {
 template <class Scalar>
 void Table<Scalar>::settle(std::span<const PaddedBox<Scalar>> boxes) {
     try {
-        settled_.resize(size());
+        if (settled_ == nullptr) {
+            settled_ = std::make_unique<std::vector<SettledBox<Scalar>>>();
+        }
+        settled_->resize(size());
     } catch (...) {
         clear();
         throw;
     }
     for (std::uint32_t entry = 0; entry < size(); ++entry) {
-        settled_[entry] = {padded(box(entry)), boxes[order_[entry]]};
+        (*settled_)[entry] = {padded(box(entry)), boxes[order_[entry]]};
     }
-    isAsFiled_ = true;
     linkLevels();
 }
 
 template <class Scalar>
 void Table<Scalar>::refresh(std::uint32_t entry) noexcept {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        bounds_[axis][entry] = settled_[entry].now.low[axis];
-        bounds_[axis + 3][entry] = settled_[entry].now.high[axis];
+        bounds_[axis][entry] = (*settled_)[entry].now.low[axis];
+        bounds_[axis + 3][entry] = (*settled_)[entry].now.high[axis];
     }
 }
 
 template <class Scalar>
 void Table<Scalar>::refreshAll(ParallelFor parallelFor) {
-    isAsFiled_ = false;
     parallelFor(size(), kTableGrain, [this](std::size_t begin, std::size_t end) {
         for (std::size_t entry = begin; entry < end; ++entry) {
             refresh(static_cast<std::uint32_t>(entry));
@@ -288,8 +291,10 @@ void Table<Scalar>::refreshAll(ParallelFor parallelFor) {
 
 template <class Scalar>
 void Table<Scalar>::unsettle() noexcept {
-    settled_.clear();
-    linkLevels();
+    if (settled_ != nullptr) {
+        settled_->clear();
+        linkLevels();
+    }
 }
 
 template <class Scalar>
@@ -298,7 +303,7 @@ void Table<Scalar>::erase(std::uint32_t entry) noexcept {
         column[entry] = std::numeric_limits<Scalar>::quiet_NaN();
     }
     if (isSettled()) {
-        settled_[entry].now = padded(nanBox<Scalar>());
+        (*settled_)[entry].now = padded(nanBox<Scalar>());
     }
 }
 
@@ -310,7 +315,9 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
            sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
-           settled_.capacity() * sizeof(settled_[0]) +
+           (settled_ != nullptr
+                ? sizeof(*settled_) + settled_->capacity() * sizeof(SettledBox<Scalar>)
+                : 0) +
            (layout_ != nullptr ? layout_->memoryBytes() : 0);
 }
 
@@ -330,7 +337,11 @@ void Table<Scalar>::releaseUnusedMemory() noexcept {
     for (auto& column : bounds_) {
         column.shrink_to_fit();
     }
-    settled_.shrink_to_fit();
+    if (!isSettled()) {
+        settled_.reset();
+    } else {
+        settled_->shrink_to_fit();
+    }
     freeArrays(buckets_, longOnes_);
     linkLevels();
 }
@@ -382,7 +393,7 @@ std::string Table<Scalar>::validate() const {
                     continue;
                 }
                 const Aabb<Scalar> box = filedBox(entry);
-                if (isSettled() && !isWithin(settled_[entry].now, settled_[entry].filed)) {
+                if (isSettled() && !isWithin((*settled_)[entry].now, (*settled_)[entry].filed)) {
                     return "A settled box lies within that by which it is filed: broken.";
                 }
                 Cell low{};

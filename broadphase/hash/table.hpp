@@ -59,13 +59,16 @@ public:
     /// around boxes[i]. Answers are by them until refreshAll(). Where memory runs out, nothing is filed.
     void settle(std::span<const PaddedBox<Scalar>> boxes);
     /// True after settle(): then answers are by the boxes as of the last refresh.
-    [[nodiscard]] bool isSettled() const noexcept { return !settled_.empty(); }
-    [[nodiscard]] bool isAsFiled() const noexcept { return isAsFiled_; }
-    [[nodiscard]] const SettledBox<Scalar>* settled() const noexcept { return settled_.data(); }
+    [[nodiscard]] bool isSettled() const noexcept {
+        return settled_ != nullptr && !settled_->empty();
+    }
+    [[nodiscard]] std::span<const SettledBox<Scalar>> settled() const noexcept {
+        return isSettled() ? std::span(*settled_) : std::span<SettledBox<Scalar>>();
+    }
     /// Of a settled table: the entry's box from the next refresh() on. Returns false, and does nothing, where
     /// it leaves the box by which the entry is filed.
     [[nodiscard]] bool moveWithin(std::uint32_t entry, const Aabb<Scalar>& box) noexcept {
-        SettledBox<Scalar>& own = settled_[entry];
+        SettledBox<Scalar>& own = (*settled_)[entry];
         // By number: what has just been written so would be waited for as a whole.
         const Scalar* const low = box.min().data();
         const Scalar* const high = box.max().data();
@@ -87,7 +90,7 @@ public:
     void unsettle() noexcept;
     /// By which the entry is filed.
     [[nodiscard]] Aabb<Scalar> filedBox(std::uint32_t entry) const noexcept {
-        return isSettled() ? unpadded(settled_[entry].filed) : box(entry);
+        return isSettled() ? unpadded((*settled_)[entry].filed) : box(entry);
     }
 
     /// Takes the entry out of every later answer. Cost: O(1); its place is reclaimed by build().
@@ -178,8 +181,7 @@ private:
     std::vector<SortedBucket<Scalar>> sortedBuckets_;
     std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
 
-    std::vector<SettledBox<Scalar>> settled_;  // by entry, or empty
-    bool isAsFiled_ = false;                   // settled, and not refreshed yet
+    std::unique_ptr<std::vector<SettledBox<Scalar>>> settled_;  // by entry; null or empty for none
 
     std::vector<std::uint32_t> buckets_;   // scratch of build()
     std::vector<std::uint32_t> longOnes_;  // the same

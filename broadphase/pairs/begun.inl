@@ -161,8 +161,9 @@ template <class Scalar>
         pairs.scratch.entryOf[order[entry]] = entry;
     }
     carryToRest(pairs, someSettled);
-    for (const PairKey key : pairs.watched.settled.begun) {
-        pairs.listToAsk(key);
+    if (pairs.watched.settled != nullptr) {
+        const std::vector<PairKey>& begun = pairs.watched.settled->begun;
+        std::for_each(begun.begin(), begun.end(), [&](PairKey key) { pairs.listToAsk(key); });
     }
     joinMobile(pairs, parallelFor);
     findAgainstResting(pairs, parallelFor);

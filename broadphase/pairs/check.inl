@@ -54,12 +54,12 @@ template <class Scalar>
         return pairs.areAtRest(key) && !pairs.areStill(key);
     };
     const Table<Scalar>& table = pairs.tables.resting;
-    const SettledPairs& settled = pairs.watched.settled;
+    const SettledPairs* const settled = pairs.watched.settled.get();
     std::vector<PairKey> listed;
-    for (std::size_t i = 0; i < settled.pairs.size(); ++i) {
-        const auto [a, b] = settled.pairs.pairs()[i];
+    for (std::size_t i = 0; settled != nullptr && i < settled->pairs.size(); ++i) {
+        const auto [a, b] = settled->pairs.pairs()[i];
         const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
-        if (settled.overlapped[i] != 0 && haveSlack(key)) {
+        if (settled->overlapped[i] != 0 && haveSlack(key)) {
             listed.push_back(key);
         }
     }

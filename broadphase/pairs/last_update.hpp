@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/store/store.hpp>
 
 #include <cstddef>
@@ -11,18 +10,23 @@
 
 namespace hashphase::detail {
 
+/// A table in old coordinates, and what is filed in it.
+template <class Scalar>
+struct OwnTable : Table<Scalar> {
+    std::vector<PaddedBox<Scalar>> boxes;     // scratch
+    std::vector<std::uint32_t> proxyIndices;  // scratch
+};
+
 /// A table of boxes as of the last update: of what was mobile then, and of the first indexedWoken of what has
 /// left rest since. Either the grid's own, until it is filed again, or one of this object's.
 template <class Scalar>
 struct LastUpdate {
     Store<Scalar>& store;
-    const Table<Scalar>* table = nullptr;       // null when neither has them
-    std::unique_ptr<Table<Scalar>> ownTable{};  // made when it is first needed; in old coordinates
+    const Table<Scalar>* table = nullptr;          // null when neither has them
+    std::unique_ptr<OwnTable<Scalar>> ownTable{};  // made when it is first needed
     std::size_t indexedWoken = 0;
-    std::uint64_t filing = 0;                   // Tables::filingCount and ...
-    std::uint64_t shift = 0;                    // ... Store::shiftCount at that time
-    std::vector<PaddedBox<Scalar>> boxes{};     // scratch
-    std::vector<std::uint32_t> proxyIndices{};  // scratch
+    std::uint64_t filing = 0;  // Tables::filingCount and ...
+    std::uint64_t shift = 0;   // ... Store::shiftCount at that time
 
     [[nodiscard]] bool isOwn() const noexcept { return table == ownTable.get(); }
 
@@ -35,9 +39,9 @@ struct LastUpdate {
         shift = store.shiftCount;
     }
     /// The own table, for what the caller files in it.
-    [[nodiscard]] Table<Scalar>& scratchTable() {
+    [[nodiscard]] OwnTable<Scalar>& scratchTable() {
         if (ownTable == nullptr) {
-            ownTable = std::make_unique<Table<Scalar>>();
+            ownTable = std::make_unique<OwnTable<Scalar>>();
         }
         return *ownTable;
     }
@@ -45,12 +49,13 @@ struct LastUpdate {
     /// forget(), since `table` may be that one.
     Table<Scalar>& file(const std::vector<std::uint32_t>& ofProxies, ParallelFor parallelFor,
                         const ProxyGroups* groups) {
-        boxes.clear();
+        OwnTable<Scalar>& own = scratchTable();
+        own.boxes.clear();
         for (const std::uint32_t proxyIndex : ofProxies) {
-            boxes.push_back(padded(store.proxies.boxAtUpdate(proxyIndex)));
+            own.boxes.push_back(padded(store.proxies.boxAtUpdate(proxyIndex)));
         }
-        scratchTable().build(ofProxies, boxes, store.fixedSizes(), parallelFor, groups);
-        return *ownTable;
+        own.build(ofProxies, own.boxes, store.fixedSizes(), parallelFor, groups);
+        return own;
     }
     /// Afterwards `table` has all but `mostUnindexed` of the proxies that are mobile now, and that were
     /// there at the last update. Each time that it is filed for more of them it has a quarter more, so
@@ -60,12 +65,12 @@ struct LastUpdate {
     void releaseMemory() noexcept {
         table = isOwn() ? nullptr : table;
         ownTable.reset();
-        freeArrays(boxes, proxyIndices);
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return boxes.capacity() * sizeof(boxes[0]) +
-               proxyIndices.capacity() * sizeof(proxyIndices[0]) +
-               (ownTable != nullptr ? sizeof(*ownTable) + ownTable->memoryBytes() : 0);
+        return ownTable == nullptr ? 0
+                                   : sizeof(*ownTable) + ownTable->memoryBytes() +
+                                         ownTable->boxes.capacity() * sizeof(PaddedBox<Scalar>) +
+                                         ownTable->proxyIndices.capacity() * sizeof(std::uint32_t);
     }
 };
 
@@ -82,6 +87,7 @@ void LastUpdate<Scalar>::index(std::size_t mostUnindexed) {
     }
     // What has come since the last update had no box then.
     const auto listed = proxies.mobile.begin();
+    std::vector<std::uint32_t>& proxyIndices = scratchTable().proxyIndices;
     proxyIndices.assign(listed, listed + static_cast<std::ptrdiff_t>(proxies.mobileAtUpdate));
     proxyIndices.insert(proxyIndices.end(), proxies.woken.begin(), proxies.woken.end());
     forget();

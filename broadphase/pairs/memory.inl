@@ -25,7 +25,9 @@ void releaseUnusedMemory(PairState<Scalar>& pairs) noexcept {
                pairs.immediateChanges.died);
     pairs.scratch = {};
     pairs.watched.carried = {};
-    freeArrays(pairs.watched.settled.turned, pairs.watched.settled.begun);
+    if (!pairs.tables.resting.isSettled()) {
+        pairs.watched.settled.reset();
+    }
     pairs.lastUpdate.releaseMemory();
     // What is kept.
     KnownPairs& known = pairs.known;

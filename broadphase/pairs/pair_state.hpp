@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,6 @@ namespace hashphase::detail {
 struct SettledPairs {
     PairList pairs;
     std::vector<std::uint8_t> overlapped;  // at the last update; by pair
-    std::uint64_t filing = 0;              // Tables::restingFilings when they were found
     // The numbers of each entry's pairs, and where they begin; made when few entries change.
     std::vector<std::uint32_t> pairsOf;
     std::vector<std::uint32_t> firstOf;
@@ -46,7 +46,8 @@ struct SettledPairs {
         firstOf.clear();
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return pairs.memoryBytes() + overlapped.capacity() + begun.capacity() * sizeof(PairKey) +
+        return sizeof(*this) + pairs.memoryBytes() + overlapped.capacity() +
+               begun.capacity() * sizeof(PairKey) +
                (pairsOf.capacity() + firstOf.capacity() + turned.capacity()) *
                    sizeof(std::uint32_t);
     }
@@ -57,13 +58,13 @@ struct SettledPairs {
 /// entry of the mobile table; both are in spatial order, so that boxes of a candidate are near in memory.
 struct WatchedPairs {
     PairList amongMobile;
-    PairList toResting;  // b is a proxyIndex
-    PairList carried;    // scratch
-    SettledPairs settled;
+    PairList toResting;                     // b is a proxyIndex
+    PairList carried;                       // scratch
+    std::unique_ptr<SettledPairs> settled;  // made when the first ones settle
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return amongMobile.memoryBytes() + toResting.memoryBytes() + carried.memoryBytes() +
-               settled.memoryBytes();
+               (settled != nullptr ? settled->memoryBytes() : 0);
     }
 };
 

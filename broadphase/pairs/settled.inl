@@ -5,8 +5,11 @@
 
 #include <broadphase/pairs/watched.inl>
 
+#include <broadphase/core/ensure_capacity.hpp>
+
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 
 namespace hashphase::detail {
@@ -32,26 +35,26 @@ template <class Scalar>
 void selectTurned(PairState<Scalar>& pairs) {
     const Kernels<Scalar>& kernel = kernels<Scalar>();
     const Table<Scalar>& table = pairs.tables.resting;
-    SettledPairs& settled = pairs.watched.settled;
+    SettledPairs& settled = *pairs.watched.settled;
     const IndexPair* const all = settled.pairs.pairs().data();
     const auto count = static_cast<std::uint32_t>(settled.pairs.size());
-    if (pairs.frame.areManySettledChanged) {
+    if (pairs.store.settling->areManyChanged) {
         settled.turned.resize(count);
         settled.turned.resize(kernel.selectTurned(all, settled.overlapped.data(), 0, count,
-                                                  table.settled(), settled.turned.data()));
+                                                  table.settled().data(), settled.turned.data()));
         pairs.cost.pairsWatched += count;
         return;
     }
     settled.turned.clear();
-    if (settled.firstOf.empty() && !pairs.frame.changedSettled.empty()) {
+    if (settled.firstOf.empty() && !pairs.store.settling->changedEntries.empty()) {
         listPairsOf(settled, table.size());
     }
-    for (const std::uint32_t entry : pairs.frame.changedSettled) {
+    for (const std::uint32_t entry : pairs.store.settling->changedEntries) {
         for (std::uint32_t k = settled.firstOf[entry]; k < settled.firstOf[entry + 1]; ++k) {
             const std::uint32_t i = settled.pairsOf[k];
             std::uint32_t turned = 0;
-            if (kernel.selectTurned(all, settled.overlapped.data(), i, i + 1, table.settled(),
-                                    &turned) > 0) {
+            if (kernel.selectTurned(all, settled.overlapped.data(), i, i + 1,
+                                    table.settled().data(), &turned) > 0) {
                 settled.turned.push_back(i);
             }
         }
@@ -62,8 +65,11 @@ void selectTurned(PairState<Scalar>& pairs) {
 // Finds which of the pairs have begun, which findBegun() asks about, and ended.
 template <class Scalar>
 void findTurned(PairState<Scalar>& pairs, ParallelFor /*parallelFor*/) {
+    if (pairs.watched.settled == nullptr) {
+        return;
+    }
     const Table<Scalar>& table = pairs.tables.resting;
-    SettledPairs& settled = pairs.watched.settled;
+    SettledPairs& settled = *pairs.watched.settled;
     settled.begun.clear();
     if (!table.isSettled() || pairs.proxies.settledChanged == 0) {
         return;
@@ -92,16 +98,20 @@ template <class Scalar>
 void listSettled(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     const Population<Scalar>& proxies = pairs.proxies;
     const Table<Scalar>& table = pairs.tables.resting;
-    SettledPairs& settled = pairs.watched.settled;
     if (!table.isSettled()) {
-        settled.clear();
+        if (pairs.watched.settled != nullptr) {
+            pairs.watched.settled->clear();
+        }
         return;
     }
-    if (settled.filing == pairs.tables.restingFilings) {
+    if (pairs.tables.settledAt != proxies.updateNumber) {
         return;
     }
+    if (pairs.watched.settled == nullptr) {
+        pairs.watched.settled = std::make_unique<SettledPairs>();
+    }
+    SettledPairs& settled = *pairs.watched.settled;
     settled.clear();
-    settled.filing = pairs.tables.restingFilings;
     joinAllowed(pairs, table, pairs.tables.restingKinds, settled.pairs, parallelFor);
     const auto hasSlack = [&](std::uint32_t entry) {
         return proxies.records[table.proxyIndex(entry)].hasSlack;
@@ -109,9 +119,13 @@ void listSettled(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     takeOut(settled.pairs,
             [&](const IndexPair& pair) { return !hasSlack(pair.a) && !hasSlack(pair.b); });
     const auto hasJoined = [&](std::uint32_t entry) {
-        return table.order()[entry] >= pairs.frame.stayedCount;
+        return table.order()[entry] >= pairs.store.settling->stayedCount;
     };
-    settled.overlapped.reserve(settled.pairs.size());
+    // Room for what later updates list, so that these take no memory.
+    ensureCapacity(settled.overlapped, settled.pairs.size());
+    ensureCapacity(settled.turned, settled.pairs.size());
+    ensureCapacity(settled.pairsOf, 2 * settled.pairs.size());
+    ensureCapacity(settled.firstOf, table.size() + std::size_t{1});
     for (const auto [a, b] : settled.pairs.pairs()) {
         const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
         const bool overlapNow = pairs.overlapNow(key);

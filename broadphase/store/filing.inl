@@ -25,22 +25,6 @@ std::size_t worthRefiling(std::size_t restingCount) {
     return std::max<std::size_t>(kFewIdle, restingCount / 8);
 }
 
-// Of all coordinates.
-template <class Scalar>
-Scalar longestMove(const Aabb<Scalar>& now, const Aabb<Scalar>& before) {
-    return std::max((now.min() - before.min()).cwiseAbs().maxCoeff(),
-                    (now.max() - before.max()).cwiseAbs().maxCoeff());
-}
-
-template <class Scalar>
-PaddedBox<Scalar> grownBy(PaddedBox<Scalar> box, Scalar by) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] -= by;
-        box.high[axis] += by;
-    }
-    return box;
-}
-
 }  // namespace
 
 // Indices that are near each other in space are near each other
@@ -53,8 +37,8 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
     frame.now.resize(count);
     frame.before.resize(hasPairs ? count : 0);
     ensureCapacity(frame.proxyIndices, proxies.nanCount);  // for relistMobile()
-    if (frame.someAreCalm && proxies.tremors.size() < proxies.records.size()) {
-        proxies.tremors.resize(proxies.records.size());
+    if (frame.someAreCalm) {
+        makeTremors();
     }
     frame.idleCount = 0;
     frame.someAreCalm = false;
@@ -89,62 +73,6 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
     });
 }
 
-// A proxy is calm while each of its moves is less than a quarter of the most slack that it may have.
-template <class Scalar>
-bool Store<Scalar>::observe(std::uint32_t proxyIndex, Record& record) noexcept {
-    const bool isChanged = record.changedAt == proxies.updateNumber;
-    const Scalar moved = isChanged ? longestMove(record.box, record.before) : Scalar(0);
-    const bool isCalm =
-        record.residency == Residency::mobile && !record.isNan && 4 * moved < mostSlack(record.box);
-    if (!isCalm) {
-        if (record.isCalm) {
-            record.isCalm = false;
-        }
-        return false;
-    }
-    frame.someAreCalm.store(true, std::memory_order_relaxed);
-    if (proxyIndex >= proxies.tremors.size()) {
-        return false;  // until the next update
-    }
-    constexpr auto kFades = Scalar(0.875);
-    Tremor<Scalar>& tremor = proxies.tremors[proxyIndex];
-    tremor.reach = std::max(moved, record.isCalm ? tremor.reach * kFades : Scalar(0));
-    tremor.calmCount = record.isCalm
-                           ? static_cast<std::uint16_t>(std::min(tremor.calmCount + 1, 0xffff))
-                           : std::uint16_t{0};
-    record.isCalm = true;
-    return maySettle(proxyIndex, record);
-}
-
-template <class Scalar>
-bool Store<Scalar>::maySettle(std::uint32_t proxyIndex, const Record& record) const noexcept {
-    if (!record.isCalm || proxyIndex >= proxies.tremors.size()) {
-        return false;
-    }
-    const Tremor<Scalar>& tremor = proxies.tremors[proxyIndex];
-    return tremor.calmCount >= std::uint64_t{config.updatesBeforeRest} * tremor.patience &&
-           slackOf(proxyIndex) > 0 && !record.box.isEmpty();
-}
-
-template <class Scalar>
-Scalar Store<Scalar>::mostSlack(const Box& box) const noexcept {
-    if (!maySettleWithSlack) {
-        return 0;
-    }
-    if (config.slack) {
-        return static_cast<Scalar>(*config.slack);
-    }
-    constexpr Scalar kShareOfMeanEdge = 4;
-    return box.sizes().sum() / (3 * kShareOfMeanEdge);
-}
-
-template <class Scalar>
-Scalar Store<Scalar>::slackOf(std::uint32_t proxyIndex) const noexcept {
-    const Scalar most = mostSlack(proxies.records[proxyIndex].box);
-    const Tremor<Scalar>& tremor = proxies.tremors[proxyIndex];
-    return config.slack ? most : std::min(most, tremor.reach * tremor.slackFactor);
-}
-
 template <class Scalar>
 bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
     const std::size_t filedCount = tables.resting.size() - tables.restingErased;
@@ -159,7 +87,9 @@ bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
     ensureCapacity(frame.proxyIndices, filedCount + frame.idleCount);
     ensureCapacity(frame.boxes, filedCount + frame.idleCount);
     listResting();
-    frame.stayedCount = static_cast<std::uint32_t>(frame.boxes.size());
+    if (settling != nullptr) {
+        settling->stayedCount = static_cast<std::uint32_t>(frame.boxes.size());
+    }
     for (std::size_t i = 0; frame.idleCount > 0 && i < proxies.mobile.size(); ++i) {
         Record& record = proxies.records[proxies.mobile[i]];
         if (record.residency != Residency::mobile) {
@@ -185,34 +115,28 @@ void Store<Scalar>::listResting() {
     frame.proxyIndices.clear();
     frame.boxes.clear();
     for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
-        if (proxies.records[proxyIndex].residency == Residency::resting) {
+        Record& record = proxies.records[proxyIndex];
+        if (record.residency == Residency::resting) {
+            record.hasSlack = record.hasSlack && !isIdle(record);
             frame.proxyIndices.push_back(proxyIndex);
-            frame.boxes.push_back(padded(proxies.records[proxyIndex].box));
+            frame.boxes.push_back(padded(record.box));
         }
     }
 }
 
 template <class Scalar>
 void Store<Scalar>::fileResting(ParallelFor parallelFor) {
-    const auto hasSlack = [this](std::uint32_t proxyIndex) {
-        return proxies.records[proxyIndex].hasSlack;
-    };
-    if (std::ranges::none_of(frame.proxyIndices, hasSlack)) {
-        tables.resting.file(frame.proxyIndices, frame.boxes, fixedSizes(), parallelFor,
-                            proxies.groupsOfAll());
-    } else {
-        frame.grown = frame.boxes;
-        for (std::size_t i = 0; i < frame.grown.size(); ++i) {
-            const std::uint32_t proxyIndex = frame.proxyIndices[i];
-            if (hasSlack(proxyIndex)) {
-                frame.grown[i] = grownBy(frame.boxes[i], slackOf(proxyIndex));
-            }
-        }
-        tables.resting.file(frame.proxyIndices, frame.grown, fixedSizes(), parallelFor,
-                            proxies.groupsOfAll());
+    const bool haveSlack = std::ranges::any_of(frame.proxyIndices, [this](std::uint32_t index) {
+        return proxies.records[index].hasSlack;
+    });
+    if (haveSlack) {
+        growBoxes();
+    }
+    tables.resting.file(frame.proxyIndices, haveSlack ? settling->grown : frame.boxes, fixedSizes(),
+                        parallelFor, proxies.groupsOfAll());
+    if (haveSlack) {
         tables.resting.settle(frame.boxes);
     }
-    ++tables.restingFilings;
     tables.idleUpdates = 0;
     tables.settledAt = proxies.updateNumber;
     tables.restingKinds = 0;
@@ -222,48 +146,6 @@ void Store<Scalar>::fileResting(ParallelFor parallelFor) {
     }
     tables.restingErased = 0;
     cost.filed += tables.resting.size();
-}
-
-template <class Scalar>
-void Store<Scalar>::followSettled() {
-    constexpr std::size_t kMany = 4;
-    constexpr std::size_t kAhead = 12;
-    const std::vector<std::uint32_t>& waiting = proxies.waiting;
-    Table<Scalar>& table = tables.resting;
-    frame.areManySettledChanged = proxies.settledChanged > table.size() / kMany;
-    frame.changedSettled.clear();
-    for (std::size_t i = 0; proxies.settledChanged > 0 && i < waiting.size(); ++i) {
-        if (i + kAhead < waiting.size()) {
-            const Record& later = proxies.records[waiting[i + kAhead]];
-            prefetch(later.hasSlack ? table.settled() + later.listedAt : nullptr);
-        }
-        const Record& record = proxies.records[waiting[i]];
-        if (!record.hasSlack) {
-            continue;
-        }
-        if (!table.moveWithin(record.listedAt, record.box)) {
-            noteLeft(waiting[i]);
-            wake(waiting[i]);
-        } else if (!frame.areManySettledChanged) {
-            frame.changedSettled.push_back(record.listedAt);
-        }
-    }
-}
-
-// In the order of the table, or where they are few in that of the changes, which is any.
-template <class Scalar>
-void Store<Scalar>::refreshSettled(ParallelFor parallelFor) {
-    Table<Scalar>& table = tables.resting;
-    if (!table.isSettled()) {
-        return;
-    }
-    if (table.isAsFiled() || frame.areManySettledChanged) {
-        table.refreshAll(parallelFor);
-        return;
-    }
-    for (const std::uint32_t entry : frame.changedSettled) {
-        table.refresh(entry);
-    }
 }
 
 template <class Scalar>
@@ -350,6 +232,7 @@ UpdateCost Store<Scalar>::endUpdate() noexcept {
     }
     if (++proxies.updateNumber == std::numeric_limits<std::uint32_t>::max()) {
         proxies.countUpdatesAnew(config.updatesBeforeRest);
+        tables.settledAt = 0;
     }
     if (config.cellSize == 0 && !tables.mustRefileMobile.load(std::memory_order_relaxed)) {
         tables.cellSize = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);

@@ -33,7 +33,8 @@ void shrink(Array& array, std::size_t count) noexcept {
 
 template <class Scalar>
 std::size_t Store<Scalar>::memoryBytes() const noexcept {
-    std::size_t bytes = sizeof(*this) + proxies.memoryBytes() + frame.memoryBytes();
+    std::size_t bytes = sizeof(*this) + proxies.memoryBytes() + frame.memoryBytes() +
+                        (settling != nullptr ? settling->memoryBytes() : 0);
     Tables<Scalar>::forAll(tables, [&](const FiledTable<Scalar>& table) {
         bytes += table.memoryBytes() + table.tree.memoryBytes();
     });
@@ -91,12 +92,12 @@ void Store<Scalar>::releaseMemory() noexcept {
     } catch (const std::bad_alloc&) {  // they are kept
     }
     shrink(proxies.records, proxies.reservedCount);
-    freeArrays(proxies.tremors);
     shrink(proxies.groups, proxies.groups.empty() ? 0 : 2 * proxies.records.capacity());
     shrink(proxies.mobile, std::max(listedCount(), proxies.reservedCount));
     shrink(proxies.woken, proxies.mobile.capacity());
     shrink(proxies.waiting, proxies.mobile.capacity());
-    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes, frame.grown);
+    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
+    settling.reset();
     if (proxies.boxesAtUpdate.empty()) {
         freeArrays(proxies.boxesAtUpdate);
         proxies.indicesAtUpdate = {};

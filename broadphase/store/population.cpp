@@ -124,7 +124,7 @@ void Population<Scalar>::clear() noexcept {
     mobileAtUpdate = 0;
     listNumber = 1;
     settledChanged = 0;
-    freeArrays(sweeping, boxesAtUpdate, groups, tremors);
+    freeArrays(sweeping, boxesAtUpdate, groups);
     indicesAtUpdate = {};
     groupKinds = {};
 }

@@ -52,15 +52,6 @@ struct alignas(16 * sizeof(Scalar)) Record {
     bool isCalm : 1 = false;       // in the last update that saw it mobile
 };
 
-/// How a proxy trembles. By it the slack is chosen with which it is filed when it settles.
-template <class Scalar>
-struct Tremor {
-    Scalar reach = 0;              // about the longest move of a coordinate in the last updates [m]
-    std::uint16_t calmCount = 0;   // updates in which it was calm, one after another
-    std::uint8_t slackFactor = 2;  // slack by reach
-    std::uint8_t patience = 1;     // how many times as long it has to be calm before it settles
-};
-
 /// Indices without a proxy, one after the other by Record::listedAt.
 struct FreeList {
     std::uint32_t first = kNoProxyIndex;
@@ -73,14 +64,13 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     using Box = Aabb<Scalar>;
 
     std::vector<Record<Scalar>> records;  // by index
-    std::vector<Tremor<Scalar>>
-        tremors;           // the same; as long as records when an update has seen them
-    std::size_t size = 0;  // proxies alive
+    std::size_t size = 0;                 // proxies alive
     std::size_t nanCount = 0;
     std::size_t reservedCount = 0;   // of proxies, by Grid::reserve()
     std::uint64_t number;            // see Grid::populationNumber()
     std::uint32_t updateNumber = 1;  // of the update that ends the present frame
-    std::size_t settledChanged = 0;  // of those with slack, since the last update; perhaps too many
+    std::uint32_t settledChanged =
+        0;  // of those with slack, since the last update; perhaps too many
     std::uint32_t firstGeneration = 0;  // of new indices; even
     bool nanReported = false;
     bool areRegrouped = false;    // groups of some, since the last update
@@ -219,8 +209,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     /// Begins to count updates at a small number: see Record::changedAt.
     void countUpdatesAnew(std::uint32_t updatesBeforeRest) noexcept;
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return records.capacity() * sizeof(records[0]) + tremors.capacity() * sizeof(tremors[0]) +
-               groups.capacity() * sizeof(groups[0]) +
+        return records.capacity() * sizeof(records[0]) + groups.capacity() * sizeof(groups[0]) +
                (mobile.capacity() + woken.capacity() + waiting.capacity() + sweeping.capacity()) *
                    sizeof(mobile[0]) +
                boxesAtUpdate.capacity() * sizeof(Box) + indicesAtUpdate.memoryBytes();

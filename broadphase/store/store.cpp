@@ -4,6 +4,7 @@
 #include <broadphase/store/filing.inl>
 #include <broadphase/store/memory.inl>
 #include <broadphase/store/reading.inl>
+#include <broadphase/store/settling.inl>
 #include <broadphase/store/shift.inl>
 
 #include <broadphase/core/ensure_capacity.hpp>
@@ -25,12 +26,6 @@ const GridConfig& checked(const GridConfig& config) {
     }
     return config;
 }
-
-// Who stays within its slack for so many updates has paid for being settled; for so many more slack would not pay.
-constexpr std::uint32_t kWorthSettling = 16;
-constexpr std::uint32_t kWorthMoreSlack = 64;
-constexpr std::uint8_t kMostSlackFactor = 32;
-constexpr std::uint8_t kMostPatience = 16;
 
 // Grids have those above, of 2^32 numbers each.
 std::uint64_t firstPopulationNumber() noexcept {
@@ -68,8 +63,8 @@ std::uint32_t Store<Scalar>::add(const Box& box, bool restsAtOnce, const ProxyGr
     ++record.generation;
     record.residency = Residency::mobile;
     proxies.listMobile(proxyIndex);
-    if (proxyIndex < proxies.tremors.size()) {
-        proxies.tremors[proxyIndex] = {};
+    if (settling != nullptr && proxyIndex < settling->tremors.size()) {
+        settling->tremors[proxyIndex] = {};
     }
     ++proxies.size;
     ++proxies.number;
@@ -136,7 +131,8 @@ void Store<Scalar>::clear() {
     mustRebuildPairs = false;
     cost = {};
     frame.someAreCalm = false;
-    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes, frame.grown);
+    freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
+    settling.reset();
     tables.cellSize = config.cellSize > 0 ? static_cast<Scalar>(config.cellSize) : Scalar(1);
 }
 
@@ -190,22 +186,6 @@ void Store<Scalar>::markMoved(std::uint32_t proxyIndex) noexcept {
     listChange(proxyIndex);
 }
 
-// Who leaves soon gets more slack the next time, or if there is no more, waits longer.
-template <class Scalar>
-void Store<Scalar>::noteLeft(std::uint32_t proxyIndex) noexcept {
-    const std::uint32_t stayed = proxies.updateNumber - tables.settledAt;
-    Tremor<Scalar>& tremor = proxies.tremors[proxyIndex];
-    const Scalar slack = tremor.reach * tremor.slackFactor;
-    const bool isThereMore =
-        tremor.slackFactor < kMostSlackFactor && slack < mostSlack(proxies.records[proxyIndex].box);
-    if (isThereMore && stayed < kWorthMoreSlack) {
-        tremor.slackFactor = static_cast<std::uint8_t>(2 * tremor.slackFactor);
-    } else if (stayed < kWorthSettling) {
-        tremor.patience = std::min<std::uint8_t>(2 * tremor.patience, kMostPatience);
-        tremor.calmCount = 0;
-    }
-}
-
 template <class Scalar>
 void Store<Scalar>::countChange(Record& record) noexcept {
     if (record.changedAt != proxies.updateNumber) {
@@ -227,21 +207,6 @@ void Store<Scalar>::wake(std::uint32_t proxyIndex) noexcept {
     record.hasSlack = false;
     proxies.listMobile(proxyIndex);
     proxies.woken.push_back(proxyIndex);
-}
-
-template <class Scalar>
-void Store<Scalar>::wakeSettled() noexcept {
-    if (!tables.resting.isSettled()) {
-        return;
-    }
-    for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
-        if (proxies.rests(proxyIndex) && proxies.records[proxyIndex].hasSlack) {
-            wake(proxyIndex);
-            listChange(proxyIndex);
-            ++proxies.settledChanged;
-        }
-    }
-    tables.resting.unsettle();
 }
 
 template <class Scalar>

@@ -10,12 +10,14 @@
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/store/population.hpp>
+#include <broadphase/store/settling.hpp>
 #include <broadphase/store/tables.hpp>
 #include <broadphase/update_cost.hpp>
 
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -37,20 +39,12 @@ struct Frame {
     std::atomic<GroupKinds::Set> mobileKinds{0};
     std::atomic<GroupKinds::Set> changedKinds{0};
 
-    // Entries of the settled ones that have changed, unless they are many.
-    std::vector<std::uint32_t> changedSettled;
-    bool areManySettledChanged = false;
-    std::uint32_t stayedCount =
-        0;  // Table::order() of what rested before the resting table was filed
-
     std::vector<std::uint32_t> proxyIndices;  // scratch: of what is filed, or has a NaN
     std::vector<PaddedBox<Scalar>> boxes;     // scratch: of what is filed
-    std::vector<PaddedBox<Scalar>> grown;     // scratch: by which it is filed, where it has slack
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return (now.capacity() + before.capacity() + boxes.capacity() + grown.capacity()) *
-                   sizeof(boxes[0]) +
-               (proxyIndices.capacity() + changedSettled.capacity()) * sizeof(proxyIndices[0]);
+        return (now.capacity() + before.capacity() + boxes.capacity()) * sizeof(boxes[0]) +
+               proxyIndices.capacity() * sizeof(proxyIndices[0]);
     }
 };
 
@@ -66,6 +60,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     Population<Scalar> proxies;
     Tables<Scalar> tables;
     Frame<Scalar> frame;
+    std::unique_ptr<Settling<Scalar>> settling;
     UpdateCost cost;               // of the present frame
     std::uint64_t shiftCount = 0;  // of the origin
     Motions<Scalar>* firstMotions = nullptr;
@@ -127,6 +122,9 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void stage(ParallelFor parallelFor, StageFor what);
     /// Watches how a mobile proxy moves. Returns whether it may settle with slack.
     [[nodiscard]] bool observe(std::uint32_t proxyIndex, Record& record) noexcept;
+    void makeTremors();
+    [[nodiscard]] bool hasTremor(std::uint32_t proxyIndex) const noexcept;
+    void growBoxes();
     [[nodiscard]] bool maySettle(std::uint32_t proxyIndex, const Record& record) const noexcept;
     /// How far it may move at most from where it is filed [m]; 0 for not at all.
     [[nodiscard]] Scalar mostSlack(const Box& box) const noexcept;

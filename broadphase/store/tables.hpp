@@ -85,10 +85,9 @@ struct Tables {
 
     std::uint32_t restingErased = 0;  // entries
     std::uint32_t settledAt = 0;      // Population::updateNumber when `resting` was filed
-    std::uint64_t restingFilings = 0;
-    std::uint64_t idleUpdates = 0;  // of mobile proxies that might rest, since then
+    std::uint32_t idleUpdates = 0;    // of mobile proxies that might rest, since then
+    Scalar cellSize = 1;              // see Grid::cellSize()
     GroupKinds::Set restingKinds = 0;
-    Scalar cellSize = 1;                        // see Grid::cellSize()
     std::atomic<std::uint64_t> filingCount{0};  // a query may file while others ask
     std::atomic<std::uint64_t> waitingRead{0};  // how much of the list of changes queries have read
 

@@ -250,7 +250,7 @@ bool takesPartInFrames(const ContestantKind& kind, std::size_t objects) {
 }
 
 std::vector<Benchmark> pairBenchmarks() {
-    const Sizes nearSizes{100, 1'000, 10'000, 30'000, 100'000};
+    const Sizes nearSizes{100, 1'000, 3'000, 10'000, 30'000, 100'000};
     Benchmark paper = pairsIn("S1-paper", "paper");
     // At a million every sphere would overlap a hundred others.
     paper.largest = 300'000;

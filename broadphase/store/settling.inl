@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// How proxies that stay near where they are settle, move within their slack, and leave it.
+
+#include <broadphase/store/store.hpp>
+
+#include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/prefetch.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace hashphase::detail {
+namespace {
+
+// Who stays within its slack for so many updates has paid for being settled; for so many more slack would not pay.
+constexpr std::uint32_t kWorthSettling = 16;
+constexpr std::uint32_t kWorthMoreSlack = 64;
+constexpr std::uint8_t kMostSlackFactor = 32;
+constexpr std::uint8_t kMostPatience = 16;
+
+// Of all coordinates.
+template <class Scalar>
+Scalar longestMove(const Aabb<Scalar>& now, const Aabb<Scalar>& before) {
+    return std::max((now.min() - before.min()).cwiseAbs().maxCoeff(),
+                    (now.max() - before.max()).cwiseAbs().maxCoeff());
+}
+
+template <class Scalar>
+PaddedBox<Scalar> grownBy(PaddedBox<Scalar> box, Scalar by) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] -= by;
+        box.high[axis] += by;
+    }
+    return box;
+}
+
+}  // namespace
+
+template <class Scalar>
+void Store<Scalar>::makeTremors() {
+    if (settling == nullptr) {
+        settling = std::make_unique<Settling<Scalar>>();
+    }
+    ensureCapacity(settling->tremors, proxies.records.size());
+    settling->tremors.resize(proxies.records.size());
+}
+
+template <class Scalar>
+bool Store<Scalar>::hasTremor(std::uint32_t proxyIndex) const noexcept {
+    return settling != nullptr && proxyIndex < settling->tremors.size();
+}
+
+// A proxy is calm while each of its moves is less than a quarter of the most slack that it may have.
+template <class Scalar>
+bool Store<Scalar>::observe(std::uint32_t proxyIndex, Record& record) noexcept {
+    const bool isChanged = record.changedAt == proxies.updateNumber;
+    const Scalar moved = isChanged ? longestMove(record.box, record.before) : Scalar(0);
+    const bool isCalm =
+        record.residency == Residency::mobile && !record.isNan && 4 * moved < mostSlack(record.box);
+    if (!isCalm) {
+        if (record.isCalm) {
+            record.isCalm = false;
+        }
+        return false;
+    }
+    frame.someAreCalm.store(true, std::memory_order_relaxed);
+    if (!hasTremor(proxyIndex)) {
+        return false;  // until the next update
+    }
+    constexpr auto kFades = Scalar(0.875);
+    Tremor<Scalar>& tremor = settling->tremors[proxyIndex];
+    tremor.reach = std::max(moved, record.isCalm ? tremor.reach * kFades : Scalar(0));
+    tremor.calmCount = record.isCalm
+                           ? static_cast<std::uint16_t>(std::min(tremor.calmCount + 1, 0xffff))
+                           : std::uint16_t{0};
+    record.isCalm = true;
+    return maySettle(proxyIndex, record);
+}
+
+template <class Scalar>
+bool Store<Scalar>::maySettle(std::uint32_t proxyIndex, const Record& record) const noexcept {
+    if (!record.isCalm || !hasTremor(proxyIndex)) {
+        return false;
+    }
+    const Tremor<Scalar>& tremor = settling->tremors[proxyIndex];
+    return tremor.calmCount >= std::uint64_t{config.updatesBeforeRest} * tremor.patience &&
+           slackOf(proxyIndex) > 0 && !record.box.isEmpty();
+}
+
+template <class Scalar>
+Scalar Store<Scalar>::mostSlack(const Box& box) const noexcept {
+    if (!maySettleWithSlack) {
+        return 0;
+    }
+    if (config.slack) {
+        return static_cast<Scalar>(*config.slack);
+    }
+    constexpr Scalar kShareOfMeanEdge = 4;
+    return box.sizes().sum() / (3 * kShareOfMeanEdge);
+}
+
+template <class Scalar>
+Scalar Store<Scalar>::slackOf(std::uint32_t proxyIndex) const noexcept {
+    const Scalar most = mostSlack(proxies.records[proxyIndex].box);
+    const Tremor<Scalar>& tremor = settling->tremors[proxyIndex];
+    return config.slack ? most : std::min(most, tremor.reach * tremor.slackFactor);
+}
+
+// By as much as they may move.
+template <class Scalar>
+void Store<Scalar>::growBoxes() {
+    ensureCapacity(settling->grown, frame.boxes.size());
+    settling->grown = frame.boxes;
+    for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
+        const std::uint32_t proxyIndex = frame.proxyIndices[i];
+        if (proxies.records[proxyIndex].hasSlack) {
+            settling->grown[i] = grownBy(frame.boxes[i], slackOf(proxyIndex));
+        }
+    }
+}
+
+template <class Scalar>
+void Store<Scalar>::followSettled() {
+    constexpr std::size_t kMany = 4;
+    constexpr std::size_t kAhead = 12;
+    if (settling == nullptr) {
+        return;
+    }
+    const std::vector<std::uint32_t>& waiting = proxies.waiting;
+    Table<Scalar>& table = tables.resting;
+    settling->areManyChanged = proxies.settledChanged > table.size() / kMany;
+    settling->changedEntries.clear();
+    for (std::size_t i = 0; proxies.settledChanged > 0 && i < waiting.size(); ++i) {
+        if (i + kAhead < waiting.size()) {
+            const Record& later = proxies.records[waiting[i + kAhead]];
+            prefetch(later.hasSlack ? table.settled().data() + later.listedAt : nullptr);
+        }
+        const Record& record = proxies.records[waiting[i]];
+        if (!record.hasSlack) {
+            continue;
+        }
+        if (!table.moveWithin(record.listedAt, record.box)) {
+            noteLeft(waiting[i]);
+            wake(waiting[i]);
+        } else if (!settling->areManyChanged) {
+            settling->changedEntries.push_back(record.listedAt);
+        }
+    }
+}
+
+// In the order of the table, or where they are few in that of the changes, which is any.
+template <class Scalar>
+void Store<Scalar>::refreshSettled(ParallelFor parallelFor) {
+    Table<Scalar>& table = tables.resting;
+    if (!table.isSettled()) {
+        return;
+    }
+    if (tables.settledAt == proxies.updateNumber || settling->areManyChanged) {
+        table.refreshAll(parallelFor);
+        return;
+    }
+    for (const std::uint32_t entry : settling->changedEntries) {
+        table.refresh(entry);
+    }
+}
+
+// Who leaves soon gets more slack the next time, or if there is no more, waits longer.
+template <class Scalar>
+void Store<Scalar>::noteLeft(std::uint32_t proxyIndex) noexcept {
+    const std::uint32_t stayed = proxies.updateNumber - tables.settledAt;
+    Tremor<Scalar>& tremor = settling->tremors[proxyIndex];
+    const Scalar slack = tremor.reach * tremor.slackFactor;
+    const bool isThereMore =
+        tremor.slackFactor < kMostSlackFactor && slack < mostSlack(proxies.records[proxyIndex].box);
+    if (isThereMore && stayed < kWorthMoreSlack) {
+        tremor.slackFactor = static_cast<std::uint8_t>(2 * tremor.slackFactor);
+    } else if (stayed < kWorthSettling) {
+        tremor.patience = std::min<std::uint8_t>(2 * tremor.patience, kMostPatience);
+        tremor.calmCount = 0;
+    }
+}
+
+template <class Scalar>
+void Store<Scalar>::wakeSettled() noexcept {
+    if (!tables.resting.isSettled()) {
+        return;
+    }
+    for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
+        if (proxies.rests(proxyIndex) && proxies.records[proxyIndex].hasSlack) {
+            wake(proxyIndex);
+            listChange(proxyIndex);
+            ++proxies.settledChanged;
+        }
+    }
+    tables.resting.unsettle();
+}
+
+}  // namespace hashphase::detail
