@@ -85,7 +85,7 @@ CREATE TABLE profiled AS
 SELECT name, count(*) AS steps, avg(step_ms) AS step, avg(shape_boxes_ms) AS shape_boxes
 FROM usual_steps GROUP BY name;
 
--- These zones hold the parts of a step. What they do themselves, and what no zone tells, is the rest of it.
+-- These zones hold the parts of a step. What they do themselves, and what no zone tells, is all else.
 CREATE TABLE holders AS
 SELECT column1 AS zone
 FROM (VALUES (''), ('stepSimulation'), ('internalSingleStepSimulation'), ('performDiscreteCollisionDetection'));
@@ -130,12 +130,12 @@ SELECT * FROM (SELECT 'whole step', name, ms(step) FROM broadphases JOIN gains U
                ORDER BY broadphases.rowid);
 
 CREATE TABLE step_sentences AS
-SELECT 'A step under each broadphase, by Bullet''s profile zones: ms (share of the step), means of '
-       || thousands(max(steps)) || ' frames taken again in worlds of their own, unverified.' AS text
+SELECT 'A step by Bullet''s profile zones: ms (share), means of ' || thousands(max(steps))
+       || ' frames taken again in worlds of their own, unverified.' AS text
 FROM gains GROUP BY NULL
 UNION ALL
-SELECT 'A broadphase has setAabb and calculateOverlappingPairs to gain; boxes of the shapes, which updateAabbs '
-       || 'makes, are the same under any.' WHERE EXISTS (SELECT 1 FROM gains)
+SELECT 'Left to gain: setAabb and calculateOverlappingPairs. Boxes of the shapes take any broadphase the same time.'
+WHERE EXISTS (SELECT 1 FROM gains)
 UNION ALL
 SELECT text FROM (SELECT name || ': broadphase ' || ms(broadphase) || ' of ' || ms(step)
                          || ' ms; left to gain: ' || fixed(left_to_gain, 1) || ' %.' AS text
