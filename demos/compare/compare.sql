@@ -1,13 +1,16 @@
 R"sql(-- SPDX-License-Identifier: Zlib
 --
 -- What `hashphase compare` shows. Measured are: run (one row), broadphases, frames (a row for each frame of
--- each broadphase) and faults (the first wrong pair of each broadphase that has one).
+-- each broadphase), faults (the first wrong pair of each broadphase that has one), and of worlds the profiled
+-- steps, with Bullet's zones of each, outer ones before inner ones.
 
--- Where no frame was run, or no pair was wrong.
+-- Where no frame was run, no pair was wrong, or no step was profiled.
 CREATE TABLE IF NOT EXISTS frames (
     name, frame, measured, pairs, exact_pairs, missing, extra, stale, set_aabb_ms, calculate_ms, step_ms);
 CREATE TABLE IF NOT EXISTS faults (
     name, fault_frame, kind, first, second, first_text, second_text, objects_json, boxes_json);
+CREATE TABLE IF NOT EXISTS steps (name, frame, step_ms, shape_boxes_ms);
+CREATE TABLE IF NOT EXISTS zones (name, frame, within, zone, ms);
 
 -- Over all frames, warm-up included.
 CREATE TABLE counted AS
@@ -68,6 +71,82 @@ FROM run;
 /* {"verdict": "and whether all pair sets of ours were exact"} */
 SELECT text, exact FROM verdict, exactness;
 
+-- --- Where the time of a step goes -----------------------------------------------------------------
+
+-- A twentieth of the steps on either side is set apart by their length, of few none: machines have fits.
+CREATE TABLE usual_steps AS
+SELECT name, frame, step_ms, shape_boxes_ms
+FROM (SELECT *, row_number() OVER (PARTITION BY name ORDER BY step_ms, frame) AS place,
+             count(*) OVER (PARTITION BY name) AS count
+      FROM steps)
+WHERE place > count / 20 AND place <= count - count / 20;
+
+CREATE TABLE profiled AS
+SELECT name, count(*) AS steps, avg(step_ms) AS step, avg(shape_boxes_ms) AS shape_boxes
+FROM usual_steps GROUP BY name;
+
+-- These zones hold the parts of a step. What they do themselves, and what no zone tells, is all else.
+CREATE TABLE holders AS
+SELECT column1 AS zone
+FROM (VALUES (''), ('stepSimulation'), ('internalSingleStepSimulation'), ('performDiscreteCollisionDetection'));
+
+CREATE TABLE zone_means AS
+SELECT name, zone, min(zones.rowid) AS place, sum(ms) / steps AS ms
+FROM zones JOIN usual_steps USING (name, frame) JOIN profiled USING (name)
+WHERE within IN (SELECT zone FROM holders) AND zone NOT IN (SELECT zone FROM holders)
+GROUP BY name, zone;
+
+-- The parts add up to the step. updateAabbs makes the boxes of the shapes, which take any broadphase the same
+-- time, and hands them to setAabb.
+CREATE TABLE parts AS
+SELECT name, place, 'boxes of the shapes' AS part, min(ms, shape_boxes) AS ms, 0 AS is_broadphase
+FROM zone_means JOIN profiled USING (name) WHERE zone = 'updateAabbs'
+UNION ALL
+SELECT name, place + 0.5, 'setAabb', ms - min(ms, shape_boxes), 1
+FROM zone_means JOIN profiled USING (name) WHERE zone = 'updateAabbs'
+UNION ALL
+SELECT name, place, zone, ms, zone = 'calculateOverlappingPairs' FROM zone_means WHERE zone <> 'updateAabbs'
+UNION ALL
+SELECT name, 1e18, 'all else', step - sum(ms), 0 FROM zone_means JOIN profiled USING (name) GROUP BY name;
+
+-- Whole steps, and how much of them a broadphase that takes no time would save.
+CREATE TABLE gains AS
+SELECT name, step, steps, sum(ms) AS broadphase, percent(sum(ms), step) AS left_to_gain
+FROM parts JOIN profiled USING (name) WHERE is_broadphase GROUP BY name;
+
+-- A row for each part, whether or not each broadphase has it.
+CREATE TABLE step_cells AS
+SELECT part, name, title, ms, percent(ms, step) AS share
+FROM (SELECT part, min(place) AS place FROM parts GROUP BY part)
+     JOIN (SELECT broadphases.rowid AS turn, name, title, step FROM broadphases JOIN gains USING (name))
+     LEFT JOIN (SELECT name, part, ms FROM parts) USING (name, part)
+ORDER BY place, turn;
+
+-- As people read it.
+CREATE TABLE step_table AS
+SELECT part, name, ms(ms) || ' (' || fixed(share, 1) || ' %)' AS cell FROM step_cells
+UNION ALL
+SELECT * FROM (SELECT 'whole step', name, ms(step) FROM broadphases JOIN gains USING (name)
+               ORDER BY broadphases.rowid);
+
+CREATE TABLE step_sentences AS
+SELECT 'A step by Bullet''s profile zones: ms (share), means of ' || thousands(max(steps))
+       || ' frames taken again in worlds of their own, unverified.' AS text
+FROM gains GROUP BY NULL
+UNION ALL
+SELECT 'Left to gain: setAabb and calculateOverlappingPairs. Boxes of the shapes take any broadphase the same time.'
+WHERE EXISTS (SELECT 1 FROM gains)
+UNION ALL
+SELECT text FROM (SELECT name || ': broadphase ' || ms(broadphase) || ' of ' || ms(step)
+                         || ' ms; left to gain: ' || fixed(left_to_gain, 1) || ' %.' AS text
+                  FROM broadphases JOIN gains USING (name) ORDER BY broadphases.rowid)
+UNION ALL
+SELECT 'This Bullet was built without profile zones: what the rest of a step costs cannot be told.'
+WHERE EXISTS (SELECT 1 FROM steps) AND NOT EXISTS (SELECT 1 FROM zones)
+UNION ALL
+SELECT 'The time limit left no time to tell what the rest of a step costs.'
+WHERE EXISTS (SELECT 1 FROM timed WHERE step IS NOT NULL) AND NOT EXISTS (SELECT 1 FROM steps);
+
 -- --- On the terminal ------------------------------------------------------------------------------
 
 /* {"rows": "setting"} */
@@ -110,6 +189,12 @@ SELECT name AS broadphase,
        ifnull(ms(fill_ms), '-') AS fill, ms(remove_ms) AS remove
 FROM results;
 
+/* {"rows": "step sentences"} */
+SELECT text FROM step_sentences;
+
+/* {"rows": "step table", "spread": true} */
+SELECT part AS "part of a step", name, cell FROM step_table;
+
 -- --- On the page ----------------------------------------------------------------------------------
 
 /* {"rows": "time limit"} */
@@ -145,6 +230,12 @@ SELECT name AS broadphase, set_aabb AS "set_aabb_ms: setAabb for all", calculate
        memory / 1048576.0 AS "memory_mib: memory [MiB]"
 FROM results WHERE left_out_after IS NULL;
 
+/* {"sentences": "how it was profiled", "section": "Where does the time of a step go?"} */
+SELECT text FROM step_sentences;
+
+/* {"table": "parts of a step", "section": "Where does the time of a step go?", "spread": true} */
+SELECT part AS "part of a step", name, cell FROM step_table;
+
 /* {"chart": "compare-times",
     "title": "Time of a frame: setAabb for all objects, then calculateOverlappingPairs",
     "settings": "{settings} Medians, with the 5th to 95th percentile.", "mark": "bar",
@@ -172,6 +263,11 @@ SELECT title AS broadphase, min(frame) AS frame,
 FROM frames JOIN broadphases USING (name), run WHERE measured
 GROUP BY name, (frame - warm_up) / :together ORDER BY broadphases.rowid, frame;
 
+/* {"each": "SELECT DISTINCT steps FROM gains LIMIT 1",
+    "chart": "compare-steps", "title": "Where the time of a step goes", "settings": "{settings} Means.",
+    "mark": "bar", "x": "part names", "y": "ms", "series": "broadphase"} */
+SELECT title AS broadphase, part AS "part: part of the step", ms AS "ms: mean [ms a step]" FROM step_cells;
+
 -- --- For programs ---------------------------------------------------------------------------------
 
 /* {"rows": "csv"} */
@@ -194,15 +290,19 @@ SELECT name, title, ours AS "ours?", fill_ms AS fillMs, left_out_after AS leftOu
        remove_ms AS removeMs, set_aabb AS "setAabbMs.median", set_aabb_low AS "setAabbMs.p5",
        set_aabb_high AS "setAabbMs.p95", calculate AS "calculateMs.median",
        calculate_low AS "calculateMs.p5", calculate_high AS "calculateMs.p95", both AS "bothMs.median",
-       both_low AS "bothMs.p5", both_high AS "bothMs.p95", step AS "stepMs.median",
+       both_low AS "bothMs.p5", both_high AS "bothMs.p95", results.step AS "stepMs.median",
        step_low AS "stepMs.p5", step_high AS "stepMs.p95", speed AS speedAgainstDbvt,
        memory AS memoryBytes, ifnull(pairs, 0) AS "pairs.total", ifnull(most_pairs, 0) AS "pairs.mostInAFrame",
        ifnull(missing, 0) AS "missing.total", ifnull(most_missing, 0) AS "missing.mostInAFrame",
        ifnull(extra, 0) AS "extra.total", ifnull(most_extra, 0) AS "extra.mostInAFrame",
        ifnull(stale, 0) AS "stale.total", ifnull(most_stale, 0) AS "stale.mostInAFrame",
        fault_frame AS "firstFault.frame", kind AS "firstFault.kind", objects_json AS "firstFault.objects{}",
-       boxes_json AS "firstFault.boxes{}"
-FROM results;
+       boxes_json AS "firstFault.boxes{}", steps AS "profiled.steps", gains.step AS "profiled.stepMs",
+       broadphase AS "profiled.broadphaseMs", left_to_gain / 100 AS "profiled.leftToGain"
+FROM results LEFT JOIN gains USING (name);
+
+/* {"rows": "step parts"} */
+SELECT name, part, ms, share / 100 AS share FROM step_cells WHERE ms IS NOT NULL;
 
 /* {"rows": "frames"} */
 SELECT name, frame, measured AS "measured?", pairs, exact_pairs AS exactPairs, missing, extra, stale,

@@ -4,6 +4,7 @@
 #include <demos/compare/comparison.hpp>
 #include <demos/compare/open_trial.hpp>
 #include <demos/compare/report.hpp>
+#include <demos/compare/step_profile.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/console/result_file.hpp>
@@ -191,6 +192,10 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     const std::size_t objects = opened.trial->facts.objects;
     const ComparisonEnd end = runFrames(*opened.trial, settings, contestants,
                                         report.replay ? &*report.replay : nullptr, measured);
+    if (std::unique_ptr<Trial> profiled = opened.trial->profiled()) {
+        opened.trial = nullptr;  // makes room for the same worlds again
+        profileSteps(*profiled, settings, end, contestants, measured);
+    }
     measured.add("run",
                  {{"scene", opened.name},
                   {"description", opened.description},

@@ -4,15 +4,36 @@
 #include <demos/report/stopwatch.hpp>
 
 namespace hashphase::demos {
+namespace {
+
+/// Keeps no box that it is given.
+class NoBoxes : public btSimpleBroadphase {
+    using btSimpleBroadphase::btSimpleBroadphase;
+    void setAabb(btBroadphaseProxy* /*proxy*/, const btVector3& /*low*/, const btVector3& /*high*/,
+                 btDispatcher* /*dispatcher*/) override {}
+};
+
+}  // namespace
 
 ObservedWorld::StepTimes ObservedWorld::stepOnce(btScalar seconds) {
     times_ = {};
-    observerMs_ = 0;
+    observingMs_ = 0;
     const Stopwatch watch;
     // No sub-steps: one step of the given length.
     stepSimulation(seconds, 0);
-    times_.wholeMs = watch.milliseconds() - observerMs_;
+    times_.wholeMs = watch.milliseconds() - observingMs_;
     return times_;
+}
+
+double ObservedWorld::timeShapeBoxes() {
+    NoBoxes nowhere(1);
+    btBroadphaseInterface* const broadphase = getBroadphase();
+    setBroadphase(&nowhere);
+    const Stopwatch watch;
+    btDiscreteDynamicsWorld::updateAabbs();
+    const double taken = watch.milliseconds();
+    setBroadphase(broadphase);
+    return taken;
 }
 
 void ObservedWorld::reserve(std::size_t objects) {
@@ -32,25 +53,31 @@ void ObservedWorld::addCollisionObject(btCollisionObject* object, int group, int
     }
 }
 
-void ObservedWorld::updateAabbs() {
-    const HeapScope scope(heap_);
-    const Stopwatch watch;
-    btDiscreteDynamicsWorld::updateAabbs();
-    times_.updateAabbsMs += watch.milliseconds();
-}
-
-void ObservedWorld::computeOverlappingPairs() {
+template <class Phase>
+double ObservedWorld::timed(const Phase& phase) {
+    const Stopwatch around;
+    double taken = 0;
     {
         const HeapScope scope(heap_);
         const Stopwatch watch;
-        btDiscreteDynamicsWorld::computeOverlappingPairs();
-        times_.calculateMs += watch.milliseconds();
+        phase();
+        taken = watch.milliseconds();
     }
+    observingMs_ += around.milliseconds() - taken;
+    return taken;
+}
+
+void ObservedWorld::updateAabbs() {
+    times_.updateAabbsMs += timed([this] { btDiscreteDynamicsWorld::updateAabbs(); });
+}
+
+void ObservedWorld::computeOverlappingPairs() {
+    times_.calculateMs += timed([this] { btDiscreteDynamicsWorld::computeOverlappingPairs(); });
     const Stopwatch watch;
     if (observer_) {
         observer_();
     }
-    observerMs_ += watch.milliseconds();
+    observingMs_ += watch.milliseconds();
 }
 
 }  // namespace hashphase::demos

@@ -4,6 +4,7 @@
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
 
+#include <algorithm>
 #include <ostream>
 
 namespace hashphase::demos {
@@ -40,24 +41,33 @@ void printReport(const CompareReport& report, std::ostream& out) {
     print(sentencesOf(rows.at("explanation")), out);
     out << '\n';
     printTable(withoutEmptyColumns(rows.at("table")), out);
+    if (const auto& sentences = rows.at("step sentences"); !sentences.rows.empty()) {
+        out << '\n';
+        print(sentencesOf(sentences), out);
+    }
+    if (const auto& steps = rows.at("step table"); !steps.rows.empty()) {
+        out << '\n';
+        printTable(steps, out);
+    }
     out << '\n' << report.findings.verdict << '\n';
 }
 
 void writeJson(const CompareReport& report, std::ostream& out) {
     const auto& rows = report.findings.rows;
     Json broadphases = rowsJson(rows.at("broadphases"));
-    for (Json& broadphase : broadphases) {
-        broadphase["frames"] = Json::array();
-    }
-    for (Json& frame : rowsJson(rows.at("frames"))) {
+    const auto addToEach = [&](const char* member, const char* theirRows) {
         for (Json& broadphase : broadphases) {
-            if (broadphase["name"] == frame["name"]) {
-                frame.erase("name");
-                broadphase["frames"].push_back(std::move(frame));
-                break;
-            }
+            broadphase[member] = Json::array();
         }
-    }
+        for (Json& row : rowsJson(rows.at(theirRows))) {
+            const auto owner = std::ranges::find_if(
+                broadphases, [&row](const Json& each) { return each["name"] == row["name"]; });
+            row.erase("name");
+            (*owner)[member].push_back(std::move(row));
+        }
+    };
+    addToEach("stepParts", "step parts");
+    addToEach("frames", "frames");
     out << textOf(Json{{"schema", "hashphase-compare"},
                        {"schemaVersion", 1},
                        {"provenance", provenanceJson(report.provenance)},

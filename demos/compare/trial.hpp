@@ -7,6 +7,7 @@
 //         broadphase, in any order.
 
 #include <demos/compare/broadphase_kind.hpp>
+#include <demos/compare/profile_zones.hpp>
 #include <demos/compare/reference_pairs.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/world_contents.hpp>
@@ -27,6 +28,10 @@ struct Observation {
     std::span<const PairKey> exact;
     std::span<const Aabb<float>> boxes;  // as the broadphase knows them
     std::optional<float> cellSize;       // of its finest cells [m], where it has cells
+
+    // Of a profiled trial, which has no pairs and boxes.
+    std::span<const ProfileZone> zones;
+    double shapeBoxesMs = 0;  // of setAabbMs, what Bullet takes to make the boxes
 };
 
 /// Called now and then with the number of objects that have been dealt with; false: stop.
@@ -67,6 +72,10 @@ public:
 
     /// Heap that the broadphase took so far [bytes], where that can be told.
     [[nodiscard]] virtual std::optional<std::int64_t> memoryBytes(std::size_t contestant) const = 0;
+
+    /// The same scene from its beginning, to be filled again, whose frames are profiled and not verified; null
+    /// where there is no simulation step.
+    [[nodiscard]] virtual std::unique_ptr<Trial> profiled() const { return nullptr; }
 
     const TrialFacts facts;
 };

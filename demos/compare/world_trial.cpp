@@ -104,8 +104,9 @@ struct FillingStopped {};
 
 class WorldTrial final : public Trial {
 public:
-    WorldTrial(FillWorld fill, ReferenceMethod reference, const TellWaiting& tell)
-        : Trial(factsOf(fill, tell)), fill_(std::move(fill)), reference_(reference) {}
+    /// Without a reference it is profiled, and not verified.
+    WorldTrial(const TrialFacts& itsFacts, FillWorld fill, std::optional<ReferenceMethod> reference)
+        : Trial(itsFacts), fill_(std::move(fill)), reference_(reference) {}
 
     std::optional<double> add(const BroadphaseKind& kind, const GoOn& goOn) override {
         auto filled = std::make_unique<World>(kind, BroadphaseNeeds{facts.bounds, facts.objects});
@@ -122,15 +123,26 @@ public:
         filled->world->setAdditionObserver({});
         worlds_.push_back(std::move(filled));
         World& world = *worlds_.back();
-        world.world->setPairObserver([this, &world] { observe(world); });
+        if (reference_) {
+            world.world->setPairObserver([this, &world] { observe(world); });
+        }
         return world.makingMs + world.world->additionMs();
     }
 
     void beginFrame() override {}
 
     Observation runFrame(std::size_t contestant) override {
-        const ObservedWorld::StepTimes times = worlds_[contestant]->world->stepOnce(kStep);
+        ObservedWorld& world = *worlds_[contestant]->world;
         Observation seen;
+        ObservedWorld::StepTimes times;
+        const auto takeStep = [&] { times = world.stepOnce(kStep); };
+        if (reference_) {
+            takeStep();
+        } else {
+            zones_ = profileZonesOf(takeStep);
+            seen.zones = zones_;
+            seen.shapeBoxesMs = world.timeShapeBoxes();
+        }
         seen.setAabbMs = times.updateAabbsMs;
         seen.calculateMs = times.calculateMs;
         seen.stepMs = times.wholeMs;
@@ -150,6 +162,10 @@ public:
         return std::as_const(*worlds_[contestant]->world).heap().bytes();
     }
 
+    [[nodiscard]] std::unique_ptr<Trial> profiled() const override {
+        return std::make_unique<WorldTrial>(facts, fill_, std::nullopt);
+    }
+
 private:
     void observe(World& world) {
         const btCollisionObjectArray& objects = world.world->getCollisionObjectArray();
@@ -160,7 +176,7 @@ private:
             boxes_.push_back(boxOf(proxy));
             filters_.push_back({proxy.m_collisionFilterGroup, proxy.m_collisionFilterMask});
         }
-        findExactPairs(reference_, boxes_, filters_, exact_);
+        findExactPairs(*reference_, boxes_, filters_, exact_);
         listPairs(
             *world.broadphase->getOverlappingPairCache(),
             [](const btBroadphaseProxy& proxy) {
@@ -171,8 +187,9 @@ private:
     }
 
     FillWorld fill_;
-    ReferenceMethod reference_;
+    std::optional<ReferenceMethod> reference_;
     std::vector<std::unique_ptr<World>> worlds_;
+    std::vector<ProfileZone> zones_;
     std::vector<Aabb<float>> boxes_;
     std::vector<CollisionFilter> filters_;
     std::vector<PairKey> exact_;
@@ -183,7 +200,8 @@ private:
 
 std::unique_ptr<Trial> worldTrial(FillWorld fill, ReferenceMethod reference,
                                   const TellWaiting& tell) {
-    return std::make_unique<WorldTrial>(std::move(fill), reference, tell);
+    const TrialFacts facts = factsOf(fill, tell);
+    return std::make_unique<WorldTrial>(facts, std::move(fill), reference);
 }
 
 }  // namespace hashphase::demos

@@ -154,7 +154,7 @@ void showZones(const Session& session) {
     }
     beginNumbers("zones", "ms", "calls");
     numbersRow("", "ms", "calls");
-    for (const Stage::Zone& zone : session.stage->zones()) {
+    for (const ProfileZone& zone : session.stage->zones()) {
         const std::string indent(2 * static_cast<std::size_t>(zone.depth), ' ');
         numbersRow(indent + std::string(zone.name), fixed(zone.milliseconds, 2),
                    withThousands(zone.calls));

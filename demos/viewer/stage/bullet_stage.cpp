@@ -32,10 +32,10 @@ Aabb<float> presentBox(const btRigidBody& body) {
 }
 
 /// The time of all zones of that name that lie in none of the same name [ms].
-double millisecondsIn(std::span<const Stage::Zone> zones, std::string_view name) {
+double millisecondsIn(std::span<const ProfileZone> zones, std::string_view name) {
     double sum = 0;
     int depthOfLast = -1;  // within that one nothing counts again
-    for (const Stage::Zone& zone : zones) {
+    for (const ProfileZone& zone : zones) {
         if (depthOfLast >= 0 && zone.depth > depthOfLast) {
             continue;
         }

@@ -3,10 +3,7 @@
 
 #include <integration/bullet/conversions.hpp>
 
-#include <LinearMath/btQuickprof.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -76,48 +73,6 @@ StageBody stageBody(const btRigidBody& body) {
 
 // --- The world -----------------------------------------------------------------------------------
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-struct Listener {
-    struct Open {
-        std::size_t zone;
-        Clock::time_point since;
-    };
-
-    std::vector<Stage::Zone> zones;
-    std::vector<Open> open;  // from the outside inwards
-
-    void enter(const char* name) {
-        open.push_back({zoneInside(name), Clock::now()});
-        ++zones[open.back().zone].calls;
-    }
-
-    void leave() {
-        const std::chrono::duration<double, std::milli> passed = Clock::now() - open.back().since;
-        zones[open.back().zone].milliseconds += passed.count();
-        open.pop_back();
-    }
-
-    // The zone of that name directly within the innermost open one. Those within a zone follow it.
-    std::size_t zoneInside(std::string_view name) {
-        const int depth = static_cast<int>(open.size());
-        std::size_t zone = open.empty() ? 0 : open.back().zone + 1;
-        for (; zone < zones.size() && zones[zone].depth >= depth; ++zone) {
-            if (zones[zone].depth == depth && zones[zone].name == name) {
-                return zone;
-            }
-        }
-        zones.insert(zones.begin() + static_cast<std::ptrdiff_t>(zone), {name, depth});
-        return zone;
-    }
-};
-
-Listener listener;  // the callbacks have no argument for it
-
-}  // namespace
-
 BulletWorld::BulletWorld(const BroadphaseKind& kind, const WorldSceneKind& scene,
                          std::size_t objects, std::uint64_t seed)
     : broadphase(kind.make({.bounds = {}, .objects = objects})),
@@ -127,14 +82,8 @@ BulletWorld::BulletWorld(const BroadphaseKind& kind, const WorldSceneKind& scene
     apply({});
 }
 
-std::vector<Stage::Zone> BulletWorld::step() {
-    listener = {};
-    btSetCustomEnterProfileZoneFunc([](const char* name) { listener.enter(name); });
-    btSetCustomLeaveProfileZoneFunc([] { listener.leave(); });
-    configurator->step(kFrameSeconds);
-    btSetCustomEnterProfileZoneFunc([](const char* /*name*/) {});
-    btSetCustomLeaveProfileZoneFunc([] {});
-    return std::move(listener.zones);
+std::vector<ProfileZone> BulletWorld::step() {
+    return profileZonesOf([this] { configurator->step(kFrameSeconds); });
 }
 
 // Nobody moves what rests by hand.

@@ -6,6 +6,7 @@
 
 #include <demos/compare/broadphase_kind.hpp>
 #include <demos/compare/observed_world.hpp>
+#include <demos/compare/profile_zones.hpp>
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/world_scenes.hpp>
 #include <demos/viewer/stage/stage.hpp>
@@ -29,9 +30,8 @@ struct BulletWorld {
     BulletWorld(const BroadphaseKind& kind, const WorldSceneKind& scene, std::size_t objects,
                 std::uint64_t seed);
 
-    /// Simulates a frame, and returns Bullet's own profile zones of it. One world at a time, on one thread:
-    /// Bullet's listener is global.
-    [[nodiscard]] std::vector<Stage::Zone> step();
+    /// Simulates a frame, and returns Bullet's own profile zones of it, as profileZonesOf().
+    [[nodiscard]] std::vector<ProfileZone> step();
 
     /// Sets what Bullet computes.
     void apply(WorldEffects effects);

@@ -12,6 +12,7 @@
 // Units    metres, seconds
 
 #include <demos/compare/broadphase_kind.hpp>
+#include <demos/compare/profile_zones.hpp>
 #include <demos/compare/reference_pairs.hpp>
 #include <demos/viewer/stage/phases.hpp>
 
@@ -176,13 +177,7 @@ public:
 
     /// Bullet's own profile zones of the last frame, outer ones before inner ones; none where Bullet does
     /// not run.
-    struct Zone {
-        std::string_view name;
-        int depth = 0;
-        double milliseconds = 0;
-        std::uint32_t calls = 0;
-    };
-    [[nodiscard]] std::span<const Zone> zones() const noexcept { return zones_; }
+    [[nodiscard]] std::span<const ProfileZone> zones() const noexcept { return zones_; }
 
     /// Of all tables.
     [[nodiscard]] virtual std::uint64_t memoryBytes() const = 0;
@@ -208,7 +203,7 @@ protected:
     Observers<float>* observers_ = nullptr;  // those of the one who derives
     Aabb<float> bounds_;
     std::vector<TunnelMark> tunnelMarks_;
-    std::vector<Zone> zones_;
+    std::vector<ProfileZone> zones_;
     PhaseClock clock_;
 
 private:

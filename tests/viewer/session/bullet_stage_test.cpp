@@ -87,7 +87,7 @@ TEST(BulletStage, HearsBulletsOwnZones) {
     EXPECT_EQ(zones.front().depth, 0);
     const auto isThere = [&](std::string_view name) {
         return std::any_of(zones.begin(), zones.end(),
-                           [name](const Stage::Zone& zone) { return zone.name == name; });
+                           [name](const ProfileZone& zone) { return zone.name == name; });
     };
     for (const char* name : {"updateAabbs", "calculateOverlappingPairs",
                              "dispatchAllCollisionPairs", "solveConstraints"}) {
