@@ -33,7 +33,8 @@ void shrink(Array& array, std::size_t count) noexcept {
 
 template <class Scalar>
 std::size_t Store<Scalar>::memoryBytes() const noexcept {
-    std::size_t bytes = sizeof(*this) + proxies.memoryBytes() + frame.memoryBytes();
+    std::size_t bytes = sizeof(*this) + proxies.memoryBytes() + frame.memoryBytes() +
+                        moveScratch.memoryBytes();
     Tables<Scalar>::forAll(tables, [&](const FiledTable<Scalar>& table) {
         bytes += table.memoryBytes() + table.tree.memoryBytes();
     });
@@ -95,6 +96,7 @@ void Store<Scalar>::releaseMemory() noexcept {
     shrink(proxies.woken, proxies.mobile.capacity());
     shrink(proxies.waiting, proxies.mobile.capacity());
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
+    moveScratch = {};
     if (proxies.boxesAtUpdate.empty()) {
         freeArrays(proxies.boxesAtUpdate);
         proxies.indicesAtUpdate = {};

@@ -127,6 +127,7 @@ void Store<Scalar>::clear() {
     mustRebuildPairs = false;
     cost = {};
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
+    moveScratch = {};
     tables.cellSize = config.cellSize > 0 ? static_cast<Scalar>(config.cellSize) : Scalar(1);
 }
 
@@ -160,18 +161,6 @@ void Store<Scalar>::markChanged(std::uint32_t proxyIndex) noexcept {
 }
 
 template <class Scalar>
-void Store<Scalar>::countChange(Record& record) noexcept {
-    if (record.changedAt != proxies.updateNumber) {
-        record.before = record.box;
-        if (record.residency == Residency::sweeping) {
-            record.before = proxies.nowhere();  // as standingBox(), which copies more slowly
-        }
-        record.changedAt = proxies.updateNumber;
-        ++cost.changed;
-    }
-}
-
-template <class Scalar>
 void Store<Scalar>::wake(std::uint32_t proxyIndex) noexcept {
     Record& record = proxies.records[proxyIndex];
     tables.resting.erase(record.listedAt);
@@ -179,16 +168,6 @@ void Store<Scalar>::wake(std::uint32_t proxyIndex) noexcept {
     record.residency = Residency::mobile;
     proxies.listMobile(proxyIndex);
     proxies.woken.push_back(proxyIndex);
-}
-
-template <class Scalar>
-void Store<Scalar>::setBox(Record& record, const Box& box) {
-    record.box = box;
-    record.restsAtOnce = false;
-    const bool isNan = hasNan(box);
-    if (isNan || record.isNan) {
-        markNan(record, isNan);
-    }
 }
 
 template <class Scalar>

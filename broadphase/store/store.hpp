@@ -9,6 +9,7 @@
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
+#include <broadphase/store/move_scratch.hpp>
 #include <broadphase/store/population.hpp>
 #include <broadphase/store/tables.hpp>
 #include <broadphase/update_cost.hpp>
@@ -57,6 +58,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     Population<Scalar> proxies;
     Tables<Scalar> tables;
     Frame<Scalar> frame;
+    MoveScratch moveScratch;
     UpdateCost cost;               // of the present frame
     std::uint64_t shiftCount = 0;  // of the origin
     Motions<Scalar>* firstMotions = nullptr;
@@ -86,9 +88,28 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// To be called before every change of a proxy's box.
     void markChanged(std::uint32_t proxyIndex) noexcept;
     /// The same where the box is not changed.
-    void countChange(Record& record) noexcept;
+    void countChange(Record& record) noexcept { cost.changed += keepBefore(record) ? 1 : 0; }
+    /// Where the record has not changed since the last update: keeps what it was then, and returns true.
+    bool keepBefore(Record& record) noexcept {
+        if (record.changedAt == proxies.updateNumber) {
+            return false;
+        }
+        record.before = record.box;
+        if (record.residency == Residency::sweeping) {
+            record.before = proxies.nowhere();  // as standingBox(), which copies more slowly
+        }
+        record.changedAt = proxies.updateNumber;
+        return true;
+    }
     void wake(std::uint32_t proxyIndex) noexcept;
-    void setBox(Record& record, const Box& box);
+    void setBox(Record& record, const Box& box) {
+        record.box = box;
+        record.restsAtOnce = false;
+        const bool isNan = hasNan(box);
+        if (isNan || record.isNan) {
+            markNan(record, isNan);
+        }
+    }
     void markNan(Record& record, bool isNan);
 
     /// It sweeps as of the update that begins here.
