@@ -62,7 +62,7 @@ void Grid<Scalar>::move(std::span<const ProxyId> ids, std::span<const Box> boxes
     const auto indexOf = [&](std::size_t i) {
         return isThere(i) ? ids[i].index : detail::kNoProxyIndex;
     };
-    if (!areDistinct(store_.moveScratch, ids.size(), indexLimit(), parallelFor, indexOf)) {
+    if (!areDistinct(store_.scratchOfMoves(), ids.size(), indexLimit(), parallelFor, indexOf)) {
         move(ids, boxes);
         return;
     }

@@ -34,7 +34,7 @@ void shrink(Array& array, std::size_t count) noexcept {
 template <class Scalar>
 std::size_t Store<Scalar>::memoryBytes() const noexcept {
     std::size_t bytes = sizeof(*this) + proxies.memoryBytes() + frame.memoryBytes() +
-                        moveScratch.memoryBytes();
+                        (moveScratch != nullptr ? moveScratch->memoryBytes() : 0);
     Tables<Scalar>::forAll(tables, [&](const FiledTable<Scalar>& table) {
         bytes += table.memoryBytes() + table.tree.memoryBytes();
     });
@@ -96,7 +96,7 @@ void Store<Scalar>::releaseMemory() noexcept {
     shrink(proxies.woken, proxies.mobile.capacity());
     shrink(proxies.waiting, proxies.mobile.capacity());
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
-    moveScratch = {};
+    moveScratch.reset();
     if (proxies.boxesAtUpdate.empty()) {
         freeArrays(proxies.boxesAtUpdate);
         proxies.indicesAtUpdate = {};

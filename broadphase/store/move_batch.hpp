@@ -62,7 +62,7 @@ template <class IndexOf>
 template <class Scalar>
 class MoveBatch {
 public:
-    explicit MoveBatch(Store<Scalar>& store) : store_(store), scratch_(store.moveScratch) {}
+    explicit MoveBatch(Store<Scalar>& store) : store_(store), scratch_(store.scratchOfMoves()) {}
 
     /// For each i below `count` calls prepare(i) once, on any thread; where it returns true, moves the proxy
     /// as moveOf(i) says, which is called on any thread, perhaps twice. No proxy is named twice. Where

@@ -22,10 +22,14 @@ struct MoveScratch {
     std::vector<std::uint32_t> entries;
     std::vector<std::atomic<std::uint32_t>>
         namedBy;  // by proxyIndex: one that names it in the batch
+    // For a caller who has to look at the proxies first: their indices, and who has to wait for others.
+    std::vector<std::uint32_t> indices;
+    std::vector<char> isAlone;
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return parts.capacity() * sizeof(Part) + entries.capacity() * sizeof(std::uint32_t) +
-               namedBy.capacity() * sizeof(namedBy[0]);
+        return sizeof(*this) + parts.capacity() * sizeof(Part) +
+               (entries.capacity() + indices.capacity()) * sizeof(std::uint32_t) +
+               isAlone.capacity() + namedBy.capacity() * sizeof(namedBy[0]);
     }
 };
 

@@ -127,7 +127,7 @@ void Store<Scalar>::clear() {
     mustRebuildPairs = false;
     cost = {};
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
-    moveScratch = {};
+    moveScratch.reset();
     tables.cellSize = config.cellSize > 0 ? static_cast<Scalar>(config.cellSize) : Scalar(1);
 }
 

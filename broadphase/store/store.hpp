@@ -17,6 +17,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -58,9 +59,9 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     Population<Scalar> proxies;
     Tables<Scalar> tables;
     Frame<Scalar> frame;
-    MoveScratch moveScratch;
-    UpdateCost cost;               // of the present frame
-    std::uint64_t shiftCount = 0;  // of the origin
+    std::unique_ptr<MoveScratch> moveScratch;  // made by the first batch of moves on threads
+    UpdateCost cost;                           // of the present frame
+    std::uint64_t shiftCount = 0;              // of the origin
     Motions<Scalar>* firstMotions = nullptr;
     PeakWatch peaks;
     bool hasPairs = false;
@@ -80,6 +81,12 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
             markChanged(proxyIndex);
             setBox(record, box);
         }
+    }
+    [[nodiscard]] MoveScratch& scratchOfMoves() {
+        if (moveScratch == nullptr) {
+            moveScratch = std::make_unique<MoveScratch>();
+        }
+        return *moveScratch;
     }
     void remove(std::uint32_t proxyIndex) noexcept;
     void clear();
