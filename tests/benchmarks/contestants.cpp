@@ -101,13 +101,13 @@ ContestantKind bulletKind(const demos::BroadphaseKind& bullet, bool inBatches) {
             .package = bullet.ours ? "this build" : HASHPHASE_BENCHMARKS_BULLET_PACKAGE,
             .ours = bullet.ours,
             .changes = true,
+            .inBatches = inBatches,
             .upTo = bullet.defaultUpTo,
             .fillsUpTo = bullet.name == "axis-sweep" ? kAxisSweepFillsUpTo : kAnyNumber,
             .make =
                 [&bullet, inBatches](const demos::BroadphaseNeeds& needs) {
                     return std::make_unique<BulletContestant>(bullet, needs, inBatches);
                 },
-            .inBatches = inBatches,
             .bullet = &bullet};
 }
 
