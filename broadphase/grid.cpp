@@ -2,6 +2,7 @@
 #include <broadphase/grid.hpp>
 
 #include <broadphase/pairs/step.hpp>
+#include <broadphase/store/move_batch.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +39,36 @@ void Grid<Scalar>::move(ProxyId id, const Box& box) {
     if (contains(id)) {
         store_.move(id.index, box);
     }
+}
+
+template <class Scalar>
+void Grid<Scalar>::move(std::span<const ProxyId> ids, std::span<const Box> boxes) {
+    HASHPHASE_ASSERT(ids.size() == boxes.size(), "There is exactly one box a proxy.");
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        move(ids[i], boxes[i]);
+    }
+}
+
+template <class Scalar>
+void Grid<Scalar>::move(std::span<const ProxyId> ids, std::span<const Box> boxes,
+                        ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(ids.size() == boxes.size(), "There is exactly one box a proxy.");
+    HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);
+    for ([[maybe_unused]] const ProxyId id : ids) {
+        HASHPHASE_ASSERT(contains(id),
+                         "Only a proxy of this grid that was not removed can be moved.");
+    }
+    const auto isThere = [&](std::size_t i) { return contains(ids[i]); };
+    const auto indexOf = [&](std::size_t i) {
+        return isThere(i) ? ids[i].index : detail::kNoProxyIndex;
+    };
+    if (!areDistinct(store_.scratchOfMoves(), ids.size(), indexLimit(), parallelFor, indexOf)) {
+        move(ids, boxes);
+        return;
+    }
+    detail::MoveBatch<Scalar>(store_).run(ids.size(), parallelFor, isThere, [&](std::size_t i) {
+        return detail::Move<Scalar>{ids[i].index, boxes[i]};
+    });
 }
 
 template <class Scalar>

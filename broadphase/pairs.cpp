@@ -47,7 +47,7 @@ PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & 
     HASHPHASE_ASSERT(!grid_.isWithinQuery(),
                      "An update is not begun within a query, or within the filter.");
     const UpdateCost cost = detail::step(grid_.store(), &state_, filter, parallelFor);
-    return detail::endUpdate(state_, cost);
+    return detail::endUpdate(state_, cost, parallelFor);
 }
 
 template <class Scalar>

@@ -8,6 +8,7 @@
 #include <broadphase/core/ensure_capacity.hpp>
 
 #include <algorithm>
+#include <atomic>
 
 namespace hashphase::detail {
 
@@ -35,24 +36,46 @@ void listRefusedAgain(PairState<Scalar>& pairs) {
     }
 }
 
+// Candidates that one thread looks up at a time: their proxies are anywhere in the memory.
+constexpr std::size_t kPairGrain = 2048;
+
+// Lists those of `asked` that the filter is to be asked about.
+template <class Scalar, class IsToBeAsked>
+void listAskedPairs(PairState<Scalar>& pairs, ParallelFor parallelFor,
+                    const IsToBeAsked& isToBeAsked) {
+    const std::vector<PairKey>& asked = pairs.call.asked;
+    std::vector<ProxyPair>& askedPairs = pairs.call.askedPairs;
+    std::atomic<bool> areAllAsked{true};
+    askedPairs.resize(asked.size());
+    parallelFor(asked.size(), kPairGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const bool isAsked = isToBeAsked(asked[i]);
+            askedPairs[i] = isAsked ? pairs.pairOf(asked[i]) : ProxyPair{};
+            if (!isAsked) {
+                areAllAsked.store(false, std::memory_order_relaxed);
+            }
+        }
+    });
+    if (!areAllAsked.load(std::memory_order_relaxed)) {
+        std::erase_if(askedPairs, [](const ProxyPair& pair) { return pair.first.isNull(); });
+    }
+}
+
 // Asks the filter about what is to be asked and has not been asked by this call.
 template <class Scalar>
-void askFilter(PairState<Scalar>& pairs, PairFilter filter) {
+void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallelFor = serialFor) {
     const std::vector<PairKey>& asked = pairs.call.asked;
     std::vector<char>& accepted = pairs.call.accepted;
-    std::vector<ProxyPair>& askedPairs = pairs.call.askedPairs;
+    const std::vector<ProxyPair>& askedPairs = pairs.call.askedPairs;
     const Pile* const pile = pairs.known.pile.get();
     pairs.sort(pairs.call.asked);
     pairs.sort(pairs.call.standing);
-    askedPairs.clear();
     const auto numberIfSampled = [pile](PairKey key) {
         return pile != nullptr ? pile->sampled.find(key) : FlatSet::kNone;
     };
-    for (const PairKey key : asked) {
-        if (pairs.mayPairNow(key) && numberIfSampled(key) == FlatSet::kNone) {
-            askedPairs.push_back(pairs.pairOf(key));
-        }
-    }
+    listAskedPairs(pairs, parallelFor, [&](PairKey key) {
+        return pairs.mayPairNow(key) && numberIfSampled(key) == FlatSet::kNone;
+    });
     accepted.assign(asked.size(), 0);
     std::size_t answers = askedPairs.size();
     {
@@ -132,12 +155,16 @@ void applyAnswers(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-excep
 }
 
 template <class Scalar>
-[[nodiscard]] PairChanges report(PairState<Scalar>& pairs, PairChangeLists& lists) noexcept {
+[[nodiscard]] PairChanges report(PairState<Scalar>& pairs, PairChangeLists& lists,
+                                 ParallelFor parallelFor = serialFor) noexcept {
     const auto list = [&](const std::vector<PairKey>& keys, std::vector<ProxyPair>& reported) {
-        reported.clear();
-        for (const PairKey key : keys) {
-            reported.push_back(pairs.pairOf(key));
-        }
+        reported.resize(keys.size());  // there is room
+        parallelForNoexcept(parallelFor, keys.size(), kPairGrain,
+                            [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t i = begin; i < end; ++i) {
+                                    reported[i] = pairs.pairOf(keys[i]);
+                                }
+                            });
     };
     pairs.sort(pairs.call.died);
     list(pairs.call.begun, lists.born);  // as sorted as what was asked

@@ -33,7 +33,7 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
             }
         }
         if (pairs != nullptr) {
-            askAndMakeRoom(*pairs, filter);
+            askAndMakeRoom(*pairs, filter, parallelFor);
         }
     } catch (...) {
         store.wakeAll();

@@ -91,9 +91,9 @@ void rememberInstead(PairState<Scalar>& pairs) {
 
 // Asks about what findBegun() has found, and makes room for all that may come of the answers.
 template <class Scalar>
-void askAndMakeRoom(PairState<Scalar>& pairs, PairFilter filter) {
+void askAndMakeRoom(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallelFor) {
     if (!pairs.known.arePairs()) {
-        askFilter(pairs, filter);
+        askFilter(pairs, filter, parallelFor);
     }
     makeRoomForAnswers(pairs, pairs.updateChanges);
 }
@@ -126,10 +126,11 @@ void publish(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-
 }
 
 template <class Scalar>
-[[nodiscard]] PairChanges endUpdate(PairState<Scalar>& pairs, const UpdateCost& cost) noexcept {
+[[nodiscard]] PairChanges endUpdate(PairState<Scalar>& pairs, const UpdateCost& cost,
+                                    ParallelFor parallelFor) noexcept {
     pairs.cost.grid = cost;
     chooseSide(pairs, true);
-    return report(pairs, pairs.updateChanges);
+    return report(pairs, pairs.updateChanges, parallelFor);
 }
 
 }  // namespace hashphase::detail

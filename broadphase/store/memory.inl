@@ -34,7 +34,8 @@ void shrink(Array& array, std::size_t count) noexcept {
 template <class Scalar>
 std::size_t Store<Scalar>::memoryBytes() const noexcept {
     std::size_t bytes = sizeof(*this) + proxies.memoryBytes() + frame.memoryBytes() +
-                        (settling != nullptr ? settling->memoryBytes() : 0);
+                        (settling != nullptr ? settling->memoryBytes() : 0) +
+                        (moveScratch != nullptr ? moveScratch->memoryBytes() : 0);
     Tables<Scalar>::forAll(tables, [&](const FiledTable<Scalar>& table) {
         bytes += table.memoryBytes() + table.tree.memoryBytes();
     });
@@ -98,6 +99,7 @@ void Store<Scalar>::releaseMemory() noexcept {
     shrink(proxies.waiting, proxies.mobile.capacity());
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
     settling.reset();
+    moveScratch.reset();
     if (proxies.boxesAtUpdate.empty()) {
         freeArrays(proxies.boxesAtUpdate);
         proxies.indicesAtUpdate = {};

@@ -133,6 +133,7 @@ void Store<Scalar>::clear() {
     frame.someAreCalm = false;
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
     settling.reset();
+    moveScratch.reset();
     tables.cellSize = config.cellSize > 0 ? static_cast<Scalar>(config.cellSize) : Scalar(1);
 }
 
@@ -187,18 +188,6 @@ void Store<Scalar>::markMoved(std::uint32_t proxyIndex) noexcept {
 }
 
 template <class Scalar>
-void Store<Scalar>::countChange(Record& record) noexcept {
-    if (record.changedAt != proxies.updateNumber) {
-        record.before = record.box;
-        if (record.residency == Residency::sweeping) {
-            record.before = proxies.nowhere();  // as standingBox(), which copies more slowly
-        }
-        record.changedAt = proxies.updateNumber;
-        ++cost.changed;
-    }
-}
-
-template <class Scalar>
 void Store<Scalar>::wake(std::uint32_t proxyIndex) noexcept {
     Record& record = proxies.records[proxyIndex];
     tables.resting.erase(record.listedAt);
@@ -207,16 +196,6 @@ void Store<Scalar>::wake(std::uint32_t proxyIndex) noexcept {
     record.hasSlack = false;
     proxies.listMobile(proxyIndex);
     proxies.woken.push_back(proxyIndex);
-}
-
-template <class Scalar>
-void Store<Scalar>::setBox(Record& record, const Box& box) {
-    record.box = box;
-    record.restsAtOnce = false;
-    const bool isNan = hasNan(box);
-    if (isNan || record.isNan) {
-        markNan(record, isNan);
-    }
 }
 
 template <class Scalar>

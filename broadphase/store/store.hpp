@@ -9,6 +9,7 @@
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
+#include <broadphase/store/move_scratch.hpp>
 #include <broadphase/store/population.hpp>
 #include <broadphase/store/settling.hpp>
 #include <broadphase/store/tables.hpp>
@@ -61,8 +62,9 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     Tables<Scalar> tables;
     Frame<Scalar> frame;
     std::unique_ptr<Settling<Scalar>> settling;
-    UpdateCost cost;               // of the present frame
-    std::uint64_t shiftCount = 0;  // of the origin
+    std::unique_ptr<MoveScratch> moveScratch;  // made by the first batch of moves on threads
+    UpdateCost cost;                           // of the present frame
+    std::uint64_t shiftCount = 0;              // of the origin
     Motions<Scalar>* firstMotions = nullptr;
     PeakWatch peaks;
     bool hasPairs = false;
@@ -84,6 +86,12 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
             setBox(record, box);
         }
     }
+    [[nodiscard]] MoveScratch& scratchOfMoves() {
+        if (moveScratch == nullptr) {
+            moveScratch = std::make_unique<MoveScratch>();
+        }
+        return *moveScratch;
+    }
     void remove(std::uint32_t proxyIndex) noexcept;
     void clear();
     void setGroups(std::uint32_t proxyIndex, const ProxyGroups& groups);
@@ -93,13 +101,32 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// The same before a move: what has slack wakes only where it leaves it, which the update will see.
     void markMoved(std::uint32_t proxyIndex) noexcept;
     /// The same where the box is not changed.
-    void countChange(Record& record) noexcept;
     void listChange(std::uint32_t proxyIndex) noexcept;
     void noteLeft(std::uint32_t proxyIndex) noexcept;
+    void countChange(Record& record) noexcept { cost.changed += keepBefore(record) ? 1 : 0; }
+    /// Where the record has not changed since the last update: keeps what it was then, and returns true.
+    bool keepBefore(Record& record) noexcept {
+        if (record.changedAt == proxies.updateNumber) {
+            return false;
+        }
+        record.before = record.box;
+        if (record.residency == Residency::sweeping) {
+            record.before = proxies.nowhere();  // as standingBox(), which copies more slowly
+        }
+        record.changedAt = proxies.updateNumber;
+        return true;
+    }
     void wake(std::uint32_t proxyIndex) noexcept;
     /// All that are filed by larger boxes than their own.
     void wakeSettled() noexcept;
-    void setBox(Record& record, const Box& box);
+    void setBox(Record& record, const Box& box) {
+        record.box = box;
+        record.restsAtOnce = false;
+        const bool isNan = hasNan(box);
+        if (isNan || record.isNan) {
+            markNan(record, isNan);
+        }
+    }
     void markNan(Record& record, bool isNan);
 
     /// It sweeps as of the update that begins here.

@@ -77,6 +77,11 @@ void FilledBroadphase::setAll(std::span<const BulletBox> boxes) {
     }
 }
 
+void FilledBroadphase::setAllInBatch(std::span<const btVector3> mins,
+                                     std::span<const btVector3> maxs) {
+    dynamic_cast<SpatialHashBroadphase&>(*broadphase_).setAabbs(proxies_, mins, maxs, nullptr);
+}
+
 void FilledBroadphase::listPairs(std::vector<PairKey>& pairs) const {
     demos::listPairs(*broadphase_->getOverlappingPairCache(), objectOf, pairs);
 }

@@ -46,6 +46,8 @@ public:
 
     /// setAabb for all objects, which must all be there.
     void setAll(std::span<const BulletBox> boxes);
+    /// The same in one call, of ours.
+    void setAllInBatch(std::span<const btVector3> mins, std::span<const btVector3> maxs);
     void set(std::uint32_t object, const BulletBox& box) {
         broadphase_->setAabb(proxies_[object], box.min, box.max, nullptr);
     }

@@ -70,6 +70,9 @@ using ProxyKey = int (*)(const btBroadphaseProxy&);
 /// Two proxies as a batch names them, with their unique ids, so that the proxies themselves need not be read.
 class BulletProxyPair {
 public:
+    /// Names none.
+    BulletProxyPair() noexcept = default;
+
     BulletProxyPair(btBroadphaseProxy& a, btBroadphaseProxy& b) noexcept
         : BulletProxyPair(a, a.m_uniqueId, b, b.m_uniqueId) {}
 
@@ -94,9 +97,9 @@ public:
     }
 
 private:
-    btBroadphaseProxy* lower_;
-    btBroadphaseProxy* upper_;
-    std::uint64_t ids_;
+    btBroadphaseProxy* lower_ = nullptr;
+    btBroadphaseProxy* upper_ = nullptr;
+    std::uint64_t ids_ = 0;
 };
 
 using ProxyCouple [[deprecated("BulletProxyPair")]] = BulletProxyPair;

@@ -4,15 +4,21 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/prefetch.hpp>
+#include <broadphase/store/move_batch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
+#include <tuple>
 #include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
+
+// How many proxies are dealt with by one thread at least.
+constexpr std::size_t kWorthThreads = 1024;
 
 void prefetchAhead(std::span<btBroadphaseProxy* const> proxies, std::size_t i) noexcept {
     constexpr std::size_t kAhead = 8;
@@ -38,15 +44,162 @@ void SpatialHashBroadphase::createProxies(std::span<const ProxyDefinition> defin
     }
 }
 
+// --- Boxes on several threads ----------------------------------------------------------------------
+
+/// Boxes that are set on several threads, as long as that comes to what single calls in their order do.
+class SpatialHashBroadphase::AabbBatch {
+public:
+    AabbBatch(SpatialHashBroadphase& owner, std::span<btBroadphaseProxy* const> proxies,
+              std::span<const btVector3> mins, std::span<const btVector3> maxs,
+              btDispatcher* dispatcher)
+        : owner_(owner), proxies_(proxies), mins_(mins), maxs_(maxs), dispatcher_(dispatcher) {}
+
+    /// Returns how many it has set; the rest is for single calls.
+    std::size_t set() {
+        if (!owner_.config_.parallelFor || owner_.sweeps_ != nullptr ||
+            proxies_.size() < kWorthThreads) {
+            return 0;
+        }
+        owner_.checkMayChange();
+        lookAtAll();
+        const auto indexOf = [&indices = scratch().indices](std::size_t i) { return indices[i]; };
+        if (!areDistinct(scratch(), proxies_.size(), owner_.grid_.indexLimit(),
+                         owner_.config_.parallelFor, indexOf)) {
+            return 0;
+        }
+        for (std::size_t first = 0;;) {
+            const std::size_t alone = firstAlone(first);
+            setPlain(first, alone);
+            if (alone == proxies_.size()) {
+                return alone;
+            }
+            first = alone + 1;
+            if (!setAlone(alone)) {
+                return first;
+            }
+        }
+    }
+
+private:
+    [[nodiscard]] detail::MoveScratch& scratch() const {
+        return owner_.grid_.store().scratchOfMoves();
+    }
+
+    void lookAtAll() {
+        const std::size_t count = proxies_.size();
+        for ([[maybe_unused]] btBroadphaseProxy* const proxy : proxies_) {
+            static_cast<void>(owner_.checkedProxy(proxy));
+        }
+        scratch().indices.resize(std::max(scratch().indices.size(), count));
+        scratch().isAlone.resize(std::max(scratch().isAlone.size(), count));
+        const auto look = [&, &indices = scratch().indices, &isAlone = scratch().isAlone](
+                              std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                prefetchAhead(proxies_, i);
+                const bool isGone = at(i).id.isNull();  // destroyed before
+                indices[i] = isGone ? detail::kNoProxyIndex : at(i).id.index;
+                isAlone[i] = isGone || !isPlain(i) ? 1 : 0;
+            }
+        };
+        owner_.config_.parallelFor(count, kWorthThreads, look);
+    }
+
+    [[nodiscard]] Proxy& at(std::size_t i) const { return static_cast<Proxy&>(*proxies_[i]); }
+    [[nodiscard]] bool isSame(std::size_t i) const {
+        return isSameBits(at(i).m_aabbMin, mins_[i]) && isSameBits(at(i).m_aabbMax, maxs_[i]);
+    }
+
+    // Whether setAabb() would set the box, and do nothing else that others could see.
+    [[nodiscard]] bool isPlain(std::size_t i) const {
+        const Proxy& proxy = at(i);
+        if (!owner_.areGroupsKnown(proxy)) {
+            return false;
+        }
+        return isSame(i) ||
+               (!mayBeEager(proxy) &&
+                (owner_.ghosts_.empty() ||
+                 overlaps(toAabb(proxy.m_aabbMin, proxy.m_aabbMax), toAabb(mins_[i], maxs_[i]))));
+    }
+    [[nodiscard]] bool mayBeEager(const Proxy& proxy) const {
+        const bool mayBeGhost =
+            proxy.client == Client::ghost || canClientBeLookedAt(proxy, dispatcher_);
+        return (proxy.m_collisionFilterGroup & owner_.config_.eagerGroups) != 0 ||
+               (mayBeGhost && owner_.mayHaveGhosts());
+    }
+    [[nodiscard]] std::size_t firstAlone(std::size_t from) const {
+        const std::span<const char> alone(scratch().isAlone.data(), proxies_.size());
+        const auto rest = alone.subspan(from);
+        return from +
+               static_cast<std::size_t>(std::find(rest.begin(), rest.end(), 1) - rest.begin());
+    }
+
+    // Returns whether all that was seen of the others still holds: callbacks may change anything.
+    [[nodiscard]] bool setAlone(std::size_t i) {
+        const auto state = [this] {
+            return std::tuple(owner_.cacheChangeCount_, owner_.ghosts_.size(),
+                              owner_.groupsDecide_);
+        };
+        const auto before = state();
+        owner_.setAabb(proxies_[i], mins_[i], maxs_[i], dispatcher_);
+        return state() == before;
+    }
+
+    void setPlain(std::size_t first, std::size_t last) {
+        std::atomic<detail::GroupKinds::Set> kinds{0};
+        const auto setBox = [&](std::size_t offset) {
+            const std::size_t i = first + offset;
+            prefetchAhead(proxies_, i);
+            if (isSame(i)) {
+                return false;
+            }
+            at(i).m_aabbMin = mins_[i];
+            at(i).m_aabbMax = maxs_[i];
+            const detail::GroupKinds::Set kind = detail::GroupKinds::bit(at(i).kind);
+            if ((kinds.load(std::memory_order_relaxed) & kind) == 0) {
+                kinds.fetch_or(kind, std::memory_order_relaxed);
+            }
+            return true;
+        };
+        const auto moveOf = [&](std::size_t offset) {
+            const Proxy& proxy = at(first + offset);
+            return detail::Move<btScalar>{proxy.id.index, toAabb(proxy.m_aabbMin, proxy.m_aabbMax)};
+        };
+        const bool areMany = last - first >= kWorthThreads;
+        detail::MoveBatch<btScalar>(owner_.grid_.store())
+            .run(last - first, areMany ? ParallelFor(owner_.config_.parallelFor) : serialFor,
+                 setBox, moveOf);
+        owner_.changedKinds_ |= kinds.load(std::memory_order_relaxed);
+        for (std::size_t i = first; i < last && !owner_.seen_.empty(); ++i) {
+            owner_.noteSeen(at(i), true);
+        }
+    }
+
+    SpatialHashBroadphase& owner_;
+    std::span<btBroadphaseProxy* const> proxies_;
+    std::span<const btVector3> mins_;
+    std::span<const btVector3> maxs_;
+    btDispatcher* dispatcher_;
+};
+
 void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies,
                                      std::span<const btVector3> aabbMins,
                                      std::span<const btVector3> aabbMaxs,
                                      btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
                      "There is exactly one box a proxy.");
-    for (std::size_t i = 0; i < proxies.size(); ++i) {
+    std::size_t i = AabbBatch(*this, proxies, aabbMins, aabbMaxs, dispatcher).set();
+    for (; i < proxies.size(); ++i) {
         prefetchAhead(proxies, i);
         setAabb(proxies[i], aabbMins[i], aabbMaxs[i], dispatcher);
+    }
+}
+
+void SpatialHashBroadphase::forPairs(bool isOnThreads, std::size_t count, LoopBody body) const {
+    constexpr std::size_t kGrain = 2048;
+    if (isOnThreads && config_.parallelFor && count > kGrain) {
+        config_.parallelFor(count, kGrain, body);
+    } else {
+        serialFor(count, kGrain, body);
     }
 }
 

@@ -11,6 +11,7 @@
 #include <LinearMath/btGeometryUtil.h>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -167,11 +168,7 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
         move(*own);
         changedKinds_ |= detail::GroupKinds::bit(own->kind);
     }
-    // Mostly they are what they were: then this is but a comparison.
-    constexpr std::uint8_t kOther = detail::GroupKinds::kOther;
-    const bool isKnown =
-        !groupsDecide_ || (own->kind != kOther && groupKinds_[own->kind] == groupsOf(*own));
-    const bool isRegrouped = !isKnown && noteGroups(*own);
+    const bool isRegrouped = !areGroupsKnown(*own) && noteGroups(*own);
     if (!seen_.empty()) {
         noteSeen(*own, true);
     }
@@ -227,18 +224,24 @@ void SpatialHashBroadphase::noteSeen(const Proxy& proxy, bool isSeen) noexcept {
 void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
                                       std::span<char> accepted) const {
     constexpr std::size_t kAhead = 16;
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-        if (i + kAhead < asked.size()) {
-            detail::prefetch(proxyAt(asked[i + kAhead].first.index));
-            detail::prefetch(proxyAt(asked[i + kAhead].second.index));
+    const auto ask = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i + kAhead < end) {
+                detail::prefetch(proxyAt(asked[i + kAhead].first.index));
+                detail::prefetch(proxyAt(asked[i + kAhead].second.index));
+            }
+            Proxy* const first = proxyAt(asked[i].first.index);
+            Proxy* const second = proxyAt(asked[i].second.index);
+            const bool isPair = watch_.cache != nullptr
+                                    ? watch_.cache->needsBroadphaseCollision(first, second)
+                                    : pairCache_->needsBroadphaseCollision(first, second);
+            accepted[i] = isPair ? 1 : 0;
         }
-        Proxy* const first = proxyAt(asked[i].first.index);
-        Proxy* const second = proxyAt(asked[i].second.index);
-        const bool isPair = watch_.cache != nullptr
-                                ? watch_.cache->needsBroadphaseCollision(first, second)
-                                : pairCache_->needsBroadphaseCollision(first, second);
-        accepted[i] = isPair ? 1 : 0;
-    }
+    };
+    // A callback of the program, or a cache of its own, is asked on the caller's thread.
+    const bool doGroupsAnswer =
+        watch_.cache != nullptr && watch_.cache->getOverlapFilterCallback() == nullptr;
+    forPairs(doGroupsAnswer, asked.size(), ask);
 }
 
 void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
@@ -254,8 +257,8 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
     if (isCacheBehind_) {
         catchUp(dispatcher);
     } else {
-        constexpr std::size_t kBirthsAtOnce = 4096;
-        apply(changes, kBirthsAtOnce, dispatcher);
+        constexpr std::size_t kBirthsAtOnce = 4096;  // the processor's cache holds them
+        apply(changes, config_.parallelFor ? changes.born.size() : kBirthsAtOnce, dispatcher);
     }
     putBackWhatWasTakenOut(dispatcher);
     const auto meets = [this](const btBroadphasePair& pair) {
@@ -268,14 +271,23 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
 // A destroyed proxy has taken its pairs with it.
 void SpatialHashBroadphase::findBulletPairs(std::span<const ProxyPair> pairs,
                                             std::vector<BulletProxyPair>& bulletPairs) const {
-    bulletPairs.clear();
-    for (const auto& [first, second] : pairs) {
-        const int firstId = uniqueIds_[first.index];
-        const int secondId = uniqueIds_[second.index];
-        if (firstId != 0 && secondId != 0) {
-            bulletPairs.emplace_back(*proxyAt(first.index), firstId, *proxyAt(second.index),
-                                     secondId);
+    bulletPairs.resize(pairs.size());
+    std::atomic<bool> areAllThere{true};
+    forPairs(true, pairs.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t first = pairs[i].first.index;
+            const std::uint32_t second = pairs[i].second.index;
+            if (uniqueIds_[first] != 0 && uniqueIds_[second] != 0) {
+                bulletPairs[i] = {*proxyAt(first), uniqueIds_[first], *proxyAt(second),
+                                  uniqueIds_[second]};
+            } else {
+                bulletPairs[i] = {};
+                areAllThere.store(false, std::memory_order_relaxed);
+            }
         }
+    });
+    if (!areAllThere.load(std::memory_order_relaxed)) {
+        std::erase_if(bulletPairs, [](const BulletProxyPair& pair) { return pair.ids() == 0; });
     }
 }
 
@@ -341,6 +353,7 @@ void SpatialHashBroadphase::applyToCache(std::span<const BulletProxyPair> died,
                                          std::span<const BulletProxyPair> born,
                                          btDispatcher* dispatcher) {
     const Applying applying(*this, !died.empty() || !born.empty());
+    cacheChangeCount_ += !died.empty() || !born.empty() ? 1 : 0;
     if (watch_.cache != nullptr) {
         watch_.cache->update(died, born, dispatcher);
         return;

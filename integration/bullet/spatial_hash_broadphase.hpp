@@ -74,9 +74,8 @@ struct SpatialHashConfig {
     /// what a bit means. For code that reads pairs between moves and steps, and is no ghost object.
     int eagerGroups = 0;
 
-    /// A ParallelFor for the loops of calculateOverlappingPairs(); empty for the caller's thread. The result
-    /// is equal on any number of threads. See bullet_parallel_for.hpp and
-    /// integration/tbb/tbb_parallel_for.hpp.
+    /// A ParallelFor for setAabbs() and calculateOverlappingPairs(); empty for the caller's thread. The result
+    /// is equal on any number of threads. See bullet_parallel_for.hpp and tbb_parallel_for.hpp.
     std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor{};
 
     /// How to find the objects that a fast rigid body passes in a step; by default not at all. With
@@ -231,8 +230,10 @@ public:
     void createProxies(std::span<const ProxyDefinition> definitions,
                        std::span<btBroadphaseProxy*> proxies, btDispatcher* dispatcher);
 
-    /// Sets the box of each proxy, in their order; all three spans have the same length (asserted).
-    /// Cost: as setAabb() for each proxy.
+    /// Sets the box of each proxy, in their order; all three spans have the same length (asserted). With
+    /// SpatialHashConfig::parallelFor on several threads, unless boxes sweep, a proxy is named twice, or the
+    /// cache has changed; with the result of as many single calls. Where memory runs out, some boxes are set:
+    /// the call may be repeated. Cost: as setAabb() for each proxy.
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
 
@@ -300,6 +301,8 @@ public:
     /// around the way; Sweeps::visit() searches the way itself, and Sweeps::motion() returns it.
     [[nodiscard]] const Sweeps<btScalar>* sweeps() const noexcept { return sweeps_.get(); }
 
+    [[nodiscard]] const SpatialHashConfig& config() const noexcept { return config_; }
+
     /// What the last calculateOverlappingPairs() cost.
     [[nodiscard]] const PairCost& lastCost() const noexcept { return pairs_.lastCost(); }
 
@@ -331,6 +334,7 @@ private:
     };
     struct PairLists;
     class Applying;
+    class AabbBatch;
     template <class Callback>
     struct ProcessCollector;
 
@@ -365,6 +369,7 @@ private:
     void removeFromGrid(Proxy* proxy);
     void dropLastProxies() noexcept;
     void releaseAfterPeak() noexcept;
+    void forPairs(bool isOnThreads, std::size_t count, LoopBody body) const;
     void findBulletPairs(std::span<const ProxyPair> pairs,
                          std::vector<BulletProxyPair>& bulletPairs) const;
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
@@ -373,10 +378,17 @@ private:
     void catchUp(btDispatcher* dispatcher);
     void putBackWhatWasTakenOut(btDispatcher* dispatcher);
     void askIfMoreWasTakenOut(btDispatcher* dispatcher);
+    // Mostly they are what they were: then this is but a comparison.
+    [[nodiscard]] bool areGroupsKnown(const Proxy& proxy) const noexcept {
+        return !groupsDecide_ || (proxy.kind != detail::GroupKinds::kOther &&
+                                  groupKinds_[proxy.kind] == groupsOf(proxy));
+    }
     [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher) {
         return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
                (proxy.client != Client::other && mayHaveGhosts() && isGhost(proxy, dispatcher));
     }
+    [[nodiscard]] static bool canClientBeLookedAt(const Proxy& proxy,
+                                                  const btDispatcher* dispatcher) noexcept;
     [[nodiscard]] bool mayHaveGhosts() const noexcept {
         return config_.eagerGhosts &&
                (watch_.cache == nullptr || watch_.cache->getInternalGhostPairCallback() != nullptr);
@@ -432,6 +444,7 @@ private:
     detail::PeakWatch peaks_;            // of the cache
     std::vector<BulletProxyPair> died_;  // scratch of PairLists
     std::vector<BulletProxyPair> born_;
+    std::uint64_t cacheChangeCount_ = 0;  // calls that have changed it, and called back
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

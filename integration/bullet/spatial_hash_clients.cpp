@@ -16,10 +16,15 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 // Bullet, too, takes a client for a btCollisionObject when it tells ghosts, or a dispatcher, of a pair: what
 // can have none may be anything. What a client is never changes.
-bool SpatialHashBroadphase::isGhost(Proxy& proxy, const btDispatcher* dispatcher) {
+bool SpatialHashBroadphase::canClientBeLookedAt(const Proxy& proxy,
+                                                const btDispatcher* dispatcher) noexcept {
     const bool mayPair = proxy.m_collisionFilterGroup != 0 && proxy.m_collisionFilterMask != 0;
-    if (proxy.client == Client::unknown && dispatcher != nullptr && mayPair &&
-        proxy.m_clientObject != nullptr) {
+    return proxy.client == Client::unknown && dispatcher != nullptr && mayPair &&
+           proxy.m_clientObject != nullptr;
+}
+
+bool SpatialHashBroadphase::isGhost(Proxy& proxy, const btDispatcher* dispatcher) {
+    if (canClientBeLookedAt(proxy, dispatcher)) {
         const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
         const bool isGhost = object.getInternalType() == btCollisionObject::CO_GHOST_OBJECT;
         if (isGhost) {

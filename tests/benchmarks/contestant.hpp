@@ -24,12 +24,14 @@ struct ObjectMotion {
     Vector3<float> displacement;  // [m]
 };
 
-/// The boxes of a frame, in the two forms in which broadphases take them.
+/// The boxes of a frame, in the forms in which broadphases take them.
 struct FrameBoxes {
     std::span<const Aabb<float>> boxes;
     std::span<const demos::BulletBox> bulletBoxes;    // the same
     std::span<const demos::CollisionFilter> filters;  // empty: all may pair
-    std::span<const ObjectMotion> motions = {};       // of those that sweep
+    std::span<const btVector3> bulletMins = {};       // the same boxes once more
+    std::span<const btVector3> bulletMaxs = {};
+    std::span<const ObjectMotion> motions = {};  // of those that sweep
 
     [[nodiscard]] demos::CollisionFilter filterOf(std::size_t object) const {
         return filters.empty() ? demos::CollisionFilter{} : filters[object];
@@ -94,7 +96,8 @@ struct ContestantKind {
 };
 
 /// A broadphase of Bullet's kind, pair cache included. `bullet` must outlive what this returns.
-[[nodiscard]] ContestantKind bulletKind(const demos::BroadphaseKind& bullet);
+[[nodiscard]] ContestantKind bulletKind(const demos::BroadphaseKind& bullet,
+                                        bool inBatches = false);
 
 /// Everything that this build can measure: ours, Bullet's, then the libraries found.
 [[nodiscard]] const std::vector<ContestantKind>& contestantKinds();

@@ -29,7 +29,13 @@ public:
         std::iota(all.begin(), all.end(), 0U);
         add(all, frame);
     }
-    void setAll(const FrameBoxes& frame) override { filled_.setAll(frame.bulletBoxes); }
+    void setAll(const FrameBoxes& frame) override {
+        if (inBatches_) {
+            filled_.setAllInBatch(frame.bulletMins, frame.bulletMaxs);
+        } else {
+            filled_.setAll(frame.bulletBoxes);
+        }
+    }
     void findPairs() override { filled_.findPairs(); }
     void listPairs(std::vector<demos::PairKey>& pairs) override { filled_.listPairs(pairs); }
 
@@ -71,13 +77,9 @@ std::vector<ContestantKind> allKinds() {
     for (const demos::BroadphaseKind& bullet : demos::broadphaseKinds()) {
         kinds.push_back(bulletKind(bullet));
         if (bullet.ours) {
-            ContestantKind batches = kinds.back();
+            ContestantKind batches = bulletKind(bullet, true);
             batches.name += "-batches";
             batches.description = "the same, told of many objects in one call";
-            batches.inBatches = true;
-            batches.make = [&bullet](const demos::BroadphaseNeeds& needs) {
-                return std::make_unique<BulletContestant>(bullet, needs, true);
-            };
             kinds.push_back(std::move(batches));
         }
     }
@@ -92,18 +94,19 @@ std::vector<ContestantKind> allKinds() {
 
 }  // namespace
 
-ContestantKind bulletKind(const demos::BroadphaseKind& bullet) {
+ContestantKind bulletKind(const demos::BroadphaseKind& bullet, bool inBatches) {
     return {.name = std::string(bullet.name),
             .title = std::string(bullet.title),
             .description = std::string(bullet.description),
             .package = bullet.ours ? "this build" : HASHPHASE_BENCHMARKS_BULLET_PACKAGE,
             .ours = bullet.ours,
             .changes = true,
+            .inBatches = inBatches,
             .upTo = bullet.defaultUpTo,
             .fillsUpTo = bullet.name == "axis-sweep" ? kAxisSweepFillsUpTo : kAnyNumber,
             .make =
-                [&bullet](const demos::BroadphaseNeeds& needs) {
-                    return std::make_unique<BulletContestant>(bullet, needs);
+                [&bullet, inBatches](const demos::BroadphaseNeeds& needs) {
+                    return std::make_unique<BulletContestant>(bullet, needs, inBatches);
                 },
             .bullet = &bullet};
 }

@@ -85,17 +85,27 @@ public:
     }
 
     [[nodiscard]] FrameBoxes frame() const {
-        return {scene_->boxes(), bulletBoxes_, scene_->filters()};
+        return {scene_->boxes(), bulletBoxes_, scene_->filters(), mins_, maxs_};
     }
     [[nodiscard]] const std::vector<Aabb<float>>& boxes() const { return scene_->boxes(); }
     [[nodiscard]] std::size_t size() const { return scene_->boxes().size(); }
     [[nodiscard]] demos::BroadphaseNeeds needs() const { return {scene_->bounds(), size()}; }
 
 private:
-    void convert() { demos::toBulletBoxes(scene_->boxes(), bulletBoxes_); }
+    void convert() {
+        demos::toBulletBoxes(scene_->boxes(), bulletBoxes_);
+        mins_.clear();
+        maxs_.clear();
+        for (const demos::BulletBox& box : bulletBoxes_) {
+            mins_.push_back(box.min);
+            maxs_.push_back(box.max);
+        }
+    }
 
     std::unique_ptr<demos::BoxScene> scene_;
     std::vector<demos::BulletBox> bulletBoxes_;
+    std::vector<btVector3> mins_;
+    std::vector<btVector3> maxs_;
 };
 
 /// A broadphase of Bullet's kind with all boxes of the scene, its pairs found.

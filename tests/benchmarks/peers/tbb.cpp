@@ -23,7 +23,7 @@ std::vector<ContestantKind> threadedKinds() {
             config.parallelFor = tbbFor;
             return std::make_unique<SpatialHashBroadphase>(config);
         }};
-    ContestantKind kind = bulletKind(bullet);
+    ContestantKind kind = bulletKind(bullet, true);
     kind.package = std::string("this build, ") + HASHPHASE_BENCHMARKS_TBB_PACKAGE;
     kind.onThreads = true;
     return {kind};

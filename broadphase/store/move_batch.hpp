@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Moves of many proxies on several threads, with the result of as many single moves in their order.
+//
+// One thread writes a proxy's record. What a mobile proxy changes beside its record is a count and an entry in
+// the list of changes: each part of the batch keeps its own, and the parts are joined in order; of a settled one
+// it is the same. Any other proxy that moves (at rest without slack, sweeping, with a NaN before or after) waits for Store::move(), which the join calls in
+// its turn.
+
+#include <broadphase/parallel_for.hpp>
+#include <broadphase/store/store.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hashphase::detail {
+
+/// Where a proxy moves.
+template <class Scalar>
+struct Move {
+    std::uint32_t proxyIndex;
+    Aabb<Scalar> box;
+};
+
+/// Whether no proxy is named twice: all indexOf(i) for i below `count` differ, and are below `indexLimit`, or
+/// kNoProxyIndex. Calls indexOf(i) on any thread. Cost: two passes.
+template <class IndexOf>
+[[nodiscard]] bool areDistinct(MoveScratch& scratch, std::size_t count, std::size_t indexLimit,
+                               ParallelFor parallelFor, const IndexOf& indexOf) {
+    if (count > indexLimit) {
+        return false;
+    }
+    if (scratch.namedBy.size() < indexLimit) {
+        scratch.namedBy = std::vector<std::atomic<std::uint32_t>>(indexLimit + indexLimit / 2);
+    }
+    // Of several that name a proxy, one is the last to write; the others find that out.
+    parallelFor(count, MoveScratch::kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            if (const std::uint32_t index = indexOf(i); index != kNoProxyIndex) {
+                scratch.namedBy[index].store(static_cast<std::uint32_t>(i),
+                                             std::memory_order_relaxed);
+            }
+        }
+    });
+    std::atomic<bool> isAnyTwice{false};
+    parallelFor(count, MoveScratch::kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t index = indexOf(i);
+            if (index != kNoProxyIndex &&
+                scratch.namedBy[index].load(std::memory_order_relaxed) != i) {
+                isAnyTwice.store(true, std::memory_order_relaxed);
+            }
+        }
+    });
+    return !isAnyTwice.load(std::memory_order_relaxed);
+}
+
+template <class Scalar>
+class MoveBatch {
+public:
+    explicit MoveBatch(Store<Scalar>& store) : store_(store), scratch_(store.scratchOfMoves()) {}
+
+    /// For each i below `count` calls prepare(i) once, on any thread; where it returns true, moves the proxy
+    /// as moveOf(i) says, which is called on any thread, perhaps twice. No proxy is named twice. Where
+    /// `parallelFor` throws, some are moved, and the rest are not.
+    template <class Prepare, class MoveOf>
+    void run(std::size_t count, ParallelFor parallelFor, const Prepare& prepare,
+             const MoveOf& moveOf) {
+        constexpr std::size_t kGrain = MoveScratch::kGrain;
+        std::size_t first = 0;
+        // The first change makes a fresh table the one that is read.
+        for (; first < count && store_.tables.isFresh.load(std::memory_order_relaxed); ++first) {
+            if (prepare(first)) {
+                moveInTurn(moveOf(first));
+            }
+        }
+        const std::size_t left = count - first;
+        scratch_.parts.assign((left + kGrain - 1) / kGrain, {});
+        scratch_.entries.resize(std::max(scratch_.entries.size(), left));
+        const auto movePart = [&](std::size_t number) {
+            Part& part = scratch_.parts[number];
+            const std::size_t begin = first + number * kGrain;
+            const std::size_t end = std::min(begin + kGrain, count);
+            for (std::size_t i = begin; i < end; ++i) {
+                if (prepare(i)) {
+                    moveNow(moveOf(i), static_cast<std::uint32_t>(i - begin), part,
+                            scratch_.entries.data() + number * kGrain);
+                }
+            }
+        };
+        const auto joinAll = [&] {
+            for (std::size_t number = 0; number < scratch_.parts.size(); ++number) {
+                const std::size_t begin = first + number * kGrain;
+                join(number, [&](std::uint32_t offset) { return moveOf(begin + offset); });
+            }
+        };
+        try {
+            parallelFor(scratch_.parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t number = begin; number < end; ++number) {
+                    movePart(number);
+                }
+            });
+        } catch (...) {
+            joinAll();
+            throw;
+        }
+        joinAll();
+    }
+
+private:
+    using Part = MoveScratch::Part;
+
+    static constexpr std::uint32_t kInTurn = std::uint32_t{1} << 31;  // beside a place in the part
+
+    void moveInTurn(const Move<Scalar>& move) { store_.move(move.proxyIndex, move.box); }
+
+    void moveNow(const Move<Scalar>& move, std::uint32_t offset, Part& part,
+                 std::uint32_t* entries) {
+        Population<Scalar>& proxies = store_.proxies;
+        Record<Scalar>& record = proxies.records[move.proxyIndex];
+        if (isSameBits(record.box, move.box)) {
+            return;
+        }
+        if (!(record.residency == Residency::mobile || record.hasSlack) || record.isNan ||
+            hasNan(move.box)) {
+            part.areAllListed = false;
+            entries[part.entryCount++] = kInTurn | offset;
+            return;
+        }
+        part.changed += store_.keepBefore(record) ? 1 : 0;
+        part.settledChanged += record.hasSlack ? 1 : 0;
+        if (!proxies.isWaiting(record)) {
+            record.listedIn = proxies.listNumber;
+            entries[part.entryCount++] = move.proxyIndex;
+        }
+        store_.setBox(record, move.box);
+    }
+
+    // In the order of the batch.
+    template <class MoveAt>
+    void join(std::size_t number, const MoveAt& moveAt) {
+        std::vector<std::uint32_t>& waiting = store_.proxies.waiting;
+        const Part& part = scratch_.parts[number];
+        const std::uint32_t* const entries = scratch_.entries.data() + number * MoveScratch::kGrain;
+        store_.cost.changed += part.changed;
+        store_.proxies.settledChanged += part.settledChanged;
+        if (part.areAllListed) {
+            waiting.insert(waiting.end(), entries, entries + part.entryCount);
+            return;
+        }
+        for (std::uint32_t i = 0; i < part.entryCount; ++i) {
+            if ((entries[i] & kInTurn) != 0) {
+                moveInTurn(moveAt(entries[i] & ~kInTurn));
+            } else {
+                waiting.push_back(entries[i]);
+            }
+        }
+    }
+
+    Store<Scalar>& store_;
+    MoveScratch& scratch_;
+};
+
+}  // namespace hashphase::detail
