@@ -2,7 +2,7 @@
 #include <broadphase/grid.hpp>
 
 #include <broadphase/pairs/step.hpp>
-#include <broadphase/store/move_batch.hpp>
+#include <broadphase/move_batch.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -62,29 +62,6 @@ void joinMobile(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     }
 }
 
-// Appends (i, entry) for what `count` boxes, of these proxies of such kinds, overlap in a table and may pair with.
-template <class Scalar>
-void queryAllowed(PairState<Scalar>& pairs, const Columns<Scalar>& boxes,
-                  std::span<const std::uint32_t> ofProxies, GroupKinds::Set kinds,
-                  const Table<Scalar>& table, GroupKinds::Set tableKinds, PairList& found,
-                  ParallelFor parallelFor) {
-    const Population<Scalar>& proxies = pairs.proxies;
-    const bool someRefuse = proxies.groupKinds.refuse(kinds, tableKinds);
-    const bool areToldApart = someRefuse && isCrowded(table);
-    const GroupsView view{proxies.groups.data(), ofProxies.data(),
-                          proxies.groupKinds.together(tableKinds)};
-    KernelCost cost;
-    found.clear();
-    queryTable(table, boxes, static_cast<std::uint32_t>(ofProxies.size()), parallelFor,
-               pairs.scratch.parts, found, cost, areToldApart ? &view : nullptr);
-    pairs.cost.boxesTested += cost.boxesTested;
-    if (someRefuse && !areToldApart) {
-        takeOut(found, [&](const IndexPair& pair) {
-            return proxies.doRefuse(ofProxies[pair.a], table.proxyIndex(pair.b));
-        });
-    }
-}
-
 // Selects all that overlap and may pair: entries of the mobile table, of what is searched, and of the resting
 // one. The few look for the many.
 template <class Scalar>
@@ -109,7 +86,7 @@ void selectAgainstResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
         }
         return;
     }
-    listSearched(pairs, isSearched);
+    listSearched(pairs, mobile, isSearched);
     queryAllowed(pairs, scratch.bounds.columns(), std::span(scratch.searchedIndices), kinds,
                  resting, pairs.tables.restingKinds, scratch.selected, parallelFor);
     for (IndexPair& pair : scratch.selected.all()) {

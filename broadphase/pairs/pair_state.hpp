@@ -74,7 +74,7 @@ struct SearchScratch {
     PairList selected;
     PairParts parts;
     std::vector<std::uint32_t> entryOf;  // of places in Population::mobile, in the mobile table
-    std::vector<std::uint32_t> searchedEntries;  // of the mobile table
+    std::vector<std::uint32_t> searchedEntries;  // of a table
     std::vector<std::uint32_t> searchedIndices;  // proxies of these, or of some
     BoxColumns<Scalar> bounds;                   // of what is looked for in a table
     std::vector<char> isNamed;                   // by index

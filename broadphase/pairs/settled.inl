@@ -7,10 +7,12 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <span>
 
 namespace hashphase::detail {
 
@@ -91,6 +93,39 @@ void findTurned(PairState<Scalar>& pairs, ParallelFor /*parallelFor*/) {
     }
 }
 
+// Finds what overlaps in the resting table, may pair, and has slack. Where few have it, they look for the others.
+template <class Scalar>
+void findFiledPairs(PairState<Scalar>& pairs, PairList& found, ParallelFor parallelFor) {
+    constexpr std::size_t kFew = 4;
+    const Table<Scalar>& table = pairs.tables.resting;
+    const GroupKinds::Set kinds = pairs.tables.restingKinds;
+    SearchScratch<Scalar>& scratch = pairs.scratch;
+    const auto hasSlack = [&](std::uint32_t proxyIndex) {
+        return bool{pairs.proxies.records[proxyIndex].hasSlack};
+    };
+    const auto hasSlackThere = [&](std::uint32_t entry) {
+        return hasSlack(table.proxyIndex(entry));
+    };
+    const auto indices = table.proxyIndices();
+    const auto count = std::count_if(indices.begin(), indices.end(), hasSlack);
+    if (kFew * static_cast<std::size_t>(count) > indices.size()) {
+        joinAllowed(pairs, table, kinds, found, parallelFor);
+        takeOut(found, [&](const IndexPair& pair) {
+            return !hasSlackThere(pair.a) && !hasSlackThere(pair.b);
+        });
+        return;
+    }
+    listSearched(pairs, table, hasSlack);
+    queryAllowed(pairs, scratch.bounds.columns(), std::span(scratch.searchedIndices), kinds, table,
+                 kinds, found, parallelFor);
+    for (IndexPair& pair : found.all()) {
+        pair.a = scratch.searchedEntries[pair.a];
+    }
+    takeOut(found, [&](const IndexPair& pair) {  // itself, and what finds it as well
+        return pair.a == pair.b || (pair.b < pair.a && hasSlackThere(pair.b));
+    });
+}
+
 // When their table has been filed anew, and has not been refreshed: lists what overlaps by the boxes by which it
 // is filed, may pair, and has slack. What rested before has been dealt with by findTurned(); of what joins,
 // which was mobile until now, pairs that ended are found.
@@ -112,12 +147,7 @@ void listSettled(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     }
     SettledPairs& settled = *pairs.watched.settled;
     settled.clear();
-    joinAllowed(pairs, table, pairs.tables.restingKinds, settled.pairs, parallelFor);
-    const auto hasSlack = [&](std::uint32_t entry) {
-        return proxies.records[table.proxyIndex(entry)].hasSlack;
-    };
-    takeOut(settled.pairs,
-            [&](const IndexPair& pair) { return !hasSlack(pair.a) && !hasSlack(pair.b); });
+    findFiledPairs(pairs, settled.pairs, parallelFor);
     const auto hasJoined = [&](std::uint32_t entry) {
         return table.order()[entry] >= pairs.store.settling->stayedCount;
     };

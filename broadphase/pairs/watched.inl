@@ -67,6 +67,30 @@ void joinAllowed(PairState<Scalar>& pairs, const Table<Scalar>& table, GroupKind
     pairs.cost.boxesTested += cost.boxesTested;
 }
 
+// Lists (i, entry) for what boxes, those of these proxies, which are of such kinds, overlap in a table and may
+// pair with.
+template <class Scalar>
+void queryAllowed(PairState<Scalar>& pairs, const Columns<Scalar>& boxes,
+                  std::span<const std::uint32_t> ofProxies, GroupKinds::Set kinds,
+                  const Table<Scalar>& table, GroupKinds::Set tableKinds, PairList& found,
+                  ParallelFor parallelFor) {
+    const Population<Scalar>& proxies = pairs.proxies;
+    const bool someRefuse = proxies.groupKinds.refuse(kinds, tableKinds);
+    const bool areToldApart = someRefuse && isCrowded(table);
+    const GroupsView view{proxies.groups.data(), ofProxies.data(),
+                          proxies.groupKinds.together(tableKinds)};
+    KernelCost cost;
+    found.clear();
+    queryTable(table, boxes, static_cast<std::uint32_t>(ofProxies.size()), parallelFor,
+               pairs.scratch.parts, found, cost, areToldApart ? &view : nullptr);
+    pairs.cost.boxesTested += cost.boxesTested;
+    if (someRefuse && !areToldApart) {
+        takeOut(found, [&](const IndexPair& pair) {
+            return proxies.doRefuse(ofProxies[pair.a], table.proxyIndex(pair.b));
+        });
+    }
+}
+
 // Calls visit(key) for each candidate that was watched, before the frame files anew.
 template <class Scalar, class Visit>
 void forEachWatched(const PairState<Scalar>& pairs, const Visit& visit) {
@@ -79,10 +103,10 @@ void forEachWatched(const PairState<Scalar>& pairs, const Visit& visit) {
     }
 }
 
-// Lists the entries of the mobile table whose proxies are to be searched, these proxies and their boxes.
+// Lists the entries of the table whose proxies are to be searched, these proxies and their boxes.
 template <class Scalar, class IsSearched>
-void listSearched(PairState<Scalar>& pairs, const IsSearched& isSearched) {
-    const Table<Scalar>& table = pairs.tables.mobile;
+void listSearched(PairState<Scalar>& pairs, const Table<Scalar>& table,
+                  const IsSearched& isSearched) {
     SearchScratch<Scalar>& scratch = pairs.scratch;
     scratch.searchedEntries.clear();
     scratch.searchedIndices.clear();
@@ -99,7 +123,8 @@ void listSearched(PairState<Scalar>& pairs, const IsSearched& isSearched) {
 
 template <class Scalar>
 void listChanged(PairState<Scalar>& pairs) {
-    listSearched(pairs, [&](std::uint32_t index) { return pairs.proxies.changedNow(index); });
+    listSearched(pairs, pairs.tables.mobile,
+                 [&](std::uint32_t index) { return pairs.proxies.changedNow(index); });
 }
 
 // Finds all candidates that are to be watched, in the tables as they are.

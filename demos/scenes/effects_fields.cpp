@@ -64,6 +64,14 @@ constexpr Access kAccess{[](EffectsFile& file) { return static_cast<double>(plac
                              member = static_cast<std::remove_reference_t<decltype(member)>>(value);
                          }};
 
+// Empty, and without a bound in a file: the grid follows the motion.
+constexpr Access kSlack{
+    [](EffectsFile& file) { return file.effects.grid.slack.value_or(NumberField::kInfinite); },
+    [](EffectsFile& file, double value) {
+        file.effects.grid.slack =
+            value < NumberField::kInfinite ? std::optional(value) : std::nullopt;
+    }};
+
 template <auto Member>
 constexpr NumberField number(double least, double most) {
     return {least, most, kAccess<Member>};
@@ -187,6 +195,9 @@ const std::vector<EffectsField>& allFields() {
          number<&GridConfig::levelRatio>(2, 64)},
         {"grid", "updatesBeforeRest", "after so many updates without a change a body rests", "",
          whole<&GridConfig::updatesBeforeRest>(1, kMostFrames)},
+        {"grid", "slack",
+         "how far a body moves before it is filed anew, to 1e30; 'none': as its motion asks for",
+         "m", NumberField{0, kInfinite, kSlack}},
     };
     return fields;
 }

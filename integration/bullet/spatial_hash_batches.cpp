@@ -4,7 +4,7 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/prefetch.hpp>
-#include <broadphase/store/move_batch.hpp>
+#include <broadphase/move_batch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 

@@ -254,10 +254,17 @@ TEST(GridConfig, IsRefusedWithASentenceWhereANumberIsOutOfItsRange) {
     for (const std::uint32_t bad : {0U, 1'000'001U, std::numeric_limits<std::uint32_t>::max()}) {
         expectRefused({.updatesBeforeRest = bad}, "updatesBeforeRest", "between 1 and 1000000");
     }
+    for (const double bad : {-1e-9, 1.1e30, kInfinity, kNan}) {
+        expectRefused({.slack = bad}, "slack",
+                      "empty (follow each proxy's motion) or between 0 and 1e30");
+    }
     std::vector<GridConfig> accepted{
         {}, {.updatesBeforeRest = 1}, {.updatesBeforeRest = 1'000'000}};
     for (const double good : {0.0, -0.0, 1e-30, 1e-3, 1.0, 1e30}) {
         accepted.push_back({.cellSize = good});
+    }
+    for (const double good : {0.0, 1e-9, 1e30}) {
+        accepted.push_back({.slack = good});
     }
     for (const double good : {2.0, 2.5, 64.0}) {
         accepted.push_back({.levelRatio = good});

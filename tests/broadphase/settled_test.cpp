@@ -148,6 +148,20 @@ TYPED_TEST(Settled, MeetWhatTravelsWhatStandsAndWhatComes) {
     EXPECT_GT(pairs, 1000U);
 }
 
+TYPED_TEST(Settled, AreFewAmongManyThatStand) {
+    TremblingWorld<TypeParam> world;
+    world.addMany(1300, boxesIn<TypeParam>(-20, 20, 0.5, 1), 1);
+    world.update();
+    for (int update = 0; update < 60; ++update) {
+        world.tremble();
+        world.update();
+    }
+    world.updateAndCheck();
+    EXPECT_GT(world.cost().resting, 1300 + world.kCount / 2);
+    world.tremble(world.kCount - 5);
+    world.updateAndCheck();
+}
+
 TYPED_TEST(Settled, SettleOnlyWhereThereMayBeSlack) {
     TremblingWorld<TypeParam> never({.slack = 0});
     never.play(40);

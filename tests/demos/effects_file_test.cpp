@@ -53,7 +53,7 @@ const std::string kEveryField = R"({
     "zones": {"interestRadius": 60, "farFrames": 5},
     "radar": {"cellSize": 0.5, "columns": 16, "rows": 8, "groupCount": 2, "frames": 6, "up": "x"}
   },
-  "grid": {"cellSize": 3, "levelRatio": 8, "updatesBeforeRest": 1}
+  "grid": {"cellSize": 3, "levelRatio": 8, "updatesBeforeRest": 1, "slack": 0.25}
 }
 )";
 
@@ -102,6 +102,7 @@ TEST(EffectsFile, HasTheSceneInItsMembers) {
     effects.grid.cellSize = 3;
     effects.grid.levelRatio = 8;
     effects.grid.updatesBeforeRest = 1;
+    effects.grid.slack = 0.25;
     effects.motion->bounds = {Vector3<double>(-1, -2.5, -1e300), Vector3<double>(1, 2, 3)};
     effects.terrain->up = UpAxis::z;
     effects.response->restitution = 0.9;

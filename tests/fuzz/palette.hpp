@@ -47,7 +47,12 @@ private:
     constexpr std::array<double, 6> kCellSizes{0, 1, 0.1, 1e-3, 1e4, 1e-30};
     constexpr std::array<double, 4> kRatios{4, 2, 16, 64};
     constexpr std::array<std::uint32_t, 4> kUpdatesBeforeRest{8, 1, 2, 1000};
+    constexpr std::array<double, 3> kSlacks{0, 0.05, 1e6};
     GridConfig config;
+    const std::size_t slack = first.arguments[2] / kUpdatesBeforeRest.size() % 6;
+    if (slack < kSlacks.size()) {  // else it follows the motion
+        config.slack = kSlacks[slack];
+    }
     config.cellSize = kCellSizes[first.arguments[0] % kCellSizes.size()];
     config.levelRatio = kRatios[first.arguments[1] % kRatios.size()];
     config.updatesBeforeRest = kUpdatesBeforeRest[first.arguments[2] % kUpdatesBeforeRest.size()];

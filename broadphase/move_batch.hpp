@@ -17,6 +17,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <broadphase/core/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// Where a proxy moves.
@@ -98,21 +100,26 @@ public:
                 join(number, [&](std::uint32_t offset) { return moveOf(begin + offset); });
             }
         };
-        try {
-            parallelFor(scratch_.parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t number = begin; number < end; ++number) {
-                    movePart(number);
-                }
-            });
-        } catch (...) {
-            joinAll();
-            throw;
-        }
-        joinAll();
+        // Where `parallelFor` throws, too.
+        const AtEnd<decltype(joinAll)> atEnd(joinAll);
+        parallelFor(scratch_.parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t number = begin; number < end; ++number) {
+                movePart(number);
+            }
+        });
     }
 
 private:
     using Part = MoveScratch::Part;
+
+    template <class Call>
+    struct AtEnd {
+        const Call& call;
+        explicit AtEnd(const Call& toCall) : call(toCall) {}
+        ~AtEnd() { call(); }
+        AtEnd(const AtEnd&) = delete;
+        AtEnd& operator=(const AtEnd&) = delete;
+    };
 
     static constexpr std::uint32_t kInTurn = std::uint32_t{1} << 31;  // beside a place in the part
 
@@ -166,3 +173,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/core/restore_macros.hpp>
