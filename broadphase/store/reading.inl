@@ -6,6 +6,9 @@
 
 #include <broadphase/store/store.hpp>
 
+#include <broadphase/search/ray_search.hpp>
+#include <broadphase/search/ray_walk.hpp>
+
 #include <algorithm>
 #include <utility>
 
@@ -16,10 +19,11 @@ namespace {
 constexpr std::size_t kFewWait = 64;
 
 // Where readers write: what they need and is not there yet is built, under a lock, or before any of them
-// has passed. The store is never a const object: it is created by its owner, and only seen as const.
-template <class Scalar>
-Store<Scalar>& writable(const Store<Scalar>& store) {
-    return const_cast<Store<Scalar>&>(store);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+// has passed. The store is never a const object: it is created by its owner, and only seen as const. Neither
+// are its tables.
+template <class T>
+T& writable(const T& what) {
+    return const_cast<T&>(what);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
 }
 
 }  // namespace
@@ -49,15 +53,19 @@ auto Store<Scalar>::beginReading() const -> Reading {
 // What goes from near to far offers all that is filed first, then the list: a short one. How long does not
 // depend on how many of them ask, so that each of many finds in the order in which it finds alone.
 template <class Scalar>
-auto Store<Scalar>::beginReadingInOrder() const -> Reading {
+void Store<Scalar>::expectRays(std::size_t count) const {
     mendTables();
     if (proxies.waiting.size() > kFewWait + tables.mobile.size() / 128 &&
         !tables.isFresh.load(std::memory_order_acquire)) {
         writable(*this).fileFresh(Lock::waitFor);
     }
-    const Reading reading = tables.reading();
-    growTrees(reading);
-    return reading;
+    growTrees(tables.reading(), count);
+}
+
+template <class Scalar>
+auto Store<Scalar>::beginReadingInOrder() const -> Reading {
+    expectRays(1);
+    return tables.reading();
 }
 
 template <class Scalar>
@@ -178,25 +186,38 @@ void Store<Scalar>::forgetErased() noexcept {
     }
 }
 
-// As mendTables(): no ray passes before it is done.
+// Others may be walking the cells of the tables, and go on with them.
 template <class Scalar>
-void Store<Scalar>::growTrees(const Reading& reading) const {
-    const auto isStale = [](const Filing& filing) {
-        return filing.table->isTreeStale.load(std::memory_order_acquire);
-    };
-    if (std::ranges::none_of(reading.filings(), isStale)) {
+void Store<Scalar>::growTrees(const Reading& reading, std::size_t rayCount) const {
+    const auto lacksTree = [&](const Filing& filing) { return filing.table->lacksTree(rayCount); };
+    if (rayCount == 0 || std::ranges::none_of(reading.filings(), lacksTree)) {
         return;
     }
     auto& self = writable(*this);
     const std::lock_guard lock(self.tables.mutex);
     Tables<Scalar>::forAll(self.tables, [&](FiledTable<Scalar>& table) {
         const auto isRead = [&](const Filing& filing) { return filing.table == &table; };
-        if (std::ranges::any_of(reading.all, isRead) &&
-            table.isTreeStale.load(std::memory_order_relaxed)) {
+        if (std::ranges::any_of(reading.all, isRead) && table.lacksTree(rayCount)) {
             table.tree.build(table);
             table.isTreeStale.store(false, std::memory_order_release);
         }
     });
+}
+
+// By which of the two changes the order in which boxes are found, and not which.
+template <class Scalar>
+bool Store<Scalar>::searchAlong(const RayRegion<Scalar>& ray, const FiledTable<Scalar>& table,
+                                double limit,
+                                FunctionRef<double(std::span<const std::uint32_t>)> take,
+                                QueryCost& queryCost) const {
+    if (!table.isTreeStale.load(std::memory_order_acquire)) {
+        return searchRay(table.tree, ray, limit, take, queryCost);
+    }
+    QueryCost walk;
+    const bool goesOn = searchCells(table, ray, limit, take, walk);
+    writable(table).countWalk(kBoxesPerRun * walk.rowsVisited + walk.boxesTested);
+    queryCost += walk;
+    return goesOn;
 }
 
 }  // namespace hashphase::detail
