@@ -70,6 +70,15 @@ Ray rayOf30Edges(Random& random, const Boxes& boxes) {
     return shortened(rayBetweenBoxes(random, boxes), 30 * edge);
 }
 
+// From as far east as one box and as far north as another: where mostly nothing is. To any box, but 100 m at
+// most.
+Ray rayFromNowhere(Random& random, const Boxes& boxes) {
+    btVector3 from = toBullet(anyBox(random.unit(), boxes).center());
+    from.setZ(anyBox(random.unit(), boxes).center().z());
+    const btVector3 to = toBullet(anyBox(random.unit(), boxes).center());
+    return shortened({from, to}, std::min(to.distance(from), 100.0F));
+}
+
 // A shot across the country: from eye level above one walker to the feet of another, up to 100 m on.
 Ray rayOverTerrain(Random& random, const Boxes& boxes) {
     constexpr float kFarthest = 100;
@@ -371,6 +380,9 @@ std::vector<Benchmark> rayBenchmarks() {
                   rayBetweenBoxes),
              rays("rays-piles", "rays from pile to pile, over 10 x 10 km",
                   brownian(demos::pileBoxes), rayBetweenBoxes),
+             rays("rays-between-piles",
+                  "rays of 100 m between these piles, most of which hit nothing",
+                  brownian(demos::pileBoxes), rayFromNowhere),
              rays("rays-terrain", "shots of up to 100 m across the paper's terrain, all moving",
                   sceneNamed("paper"), rayOverTerrain, {}, Moves::all),
              rays("rays-closest", "rays-dense-long, but only the nearest box is wanted", dense,
