@@ -45,17 +45,22 @@ public:
             low_[axis] = std::min(a, b) - padding;
             high_[axis] = std::max(a, b) + padding;
             sum += reach;
-            part_.lowFrom[axis] = static_cast<Scalar>(from_[axis] + high_[axis]);
-            part_.highFrom[axis] = static_cast<Scalar>(from_[axis] + low_[axis]);
-            part_.inverse[axis] =
-                static_cast<Scalar>(std::clamp(1 / way_[axis], -1 / kTiny, 1 / kTiny));
         }
         isExpressible_ = sum < 1 / kTiny;
-        if (!isExpressible_) {
-            std::ranges::fill(part_.lowFrom, Limits::max());
-            std::ranges::fill(part_.highFrom, Limits::lowest());
-            std::ranges::fill(part_.inverse, Scalar(1));
+    }
+
+    /// Prepares part() for kernels; most rays that meet nothing need not.
+    void aim() noexcept {
+        for (std::size_t axis = 0; axis < 3 && !isAimed_; ++axis) {
+            const double inverse = std::clamp(1 / way_[axis], -1 / kTiny, 1 / kTiny);
+            const double most = Limits::max();
+            part_.lowFrom[axis] =
+                static_cast<Scalar>(isExpressible_ ? from_[axis] + high_[axis] : most);
+            part_.highFrom[axis] =
+                static_cast<Scalar>(isExpressible_ ? from_[axis] + low_[axis] : -most);
+            part_.inverse[axis] = static_cast<Scalar>(isExpressible_ ? inverse : 1.0);
         }
+        isAimed_ = true;
     }
 
     /// False when a number is too large to be counted with, or NaN: then it may meet every box.
@@ -105,6 +110,7 @@ private:
     std::array<double, 3> low_;  // of what is moved, and the padding
     std::array<double, 3> high_;
     bool isExpressible_;
+    bool isAimed_ = false;
     RayPart<Scalar> part_;
 };
 
@@ -125,12 +131,10 @@ public:
         if (!ray_.isExpressible() || !level.hasCells()) {
             return read(level, true);
         }
-        setCells(level, 0, 0, -1);
-        RayPart<Scalar>& part = ray_.part();
         std::size_t axis = 0;
         std::int32_t count = 0;
         for (std::size_t i = 0; i < 3; ++i) {
-            if (part.lowCell[i] > part.highCell[i]) {
+            if (!setCells(level, i)) {
                 return true;
             }
             if (const std::int32_t parts = partsAlong(i); parts > count) {
@@ -157,18 +161,12 @@ private:
         return (ray_.part().highCell[axis] - ray_.part().lowCell[axis]) / kCells[axis] + 1;
     }
 
-    // Sets the part's cells to those around its bounds, or along `axis` to those from low to high.
-    void setCells(const Level<Scalar>& level, std::size_t axis, std::int32_t low,
-                  std::int32_t high) noexcept {
+    // Sets the part's cells along an axis to those around its bounds. Returns whether there are any.
+    [[nodiscard]] bool setCells(const Level<Scalar>& level, std::size_t axis) noexcept {
         RayPart<Scalar>& part = ray_.part();
-        for (std::size_t i = 0; i < 3; ++i) {
-            part.lowCell[i] = std::max(level.cell(part.bounds[i], i) - 1, level.low[i]);
-            part.highCell[i] = std::min(level.cell(part.bounds[i + 3], i), level.high[i]);
-        }
-        if (low <= high) {
-            part.lowCell[axis] = low;
-            part.highCell[axis] = high;
-        }
+        part.lowCell[axis] = std::max(level.cell(part.bounds[axis], axis) - 1, level.low[axis]);
+        part.highCell[axis] = std::min(level.cell(part.bounds[axis + 3], axis), level.high[axis]);
+        return part.lowCell[axis] <= part.highCell[axis];
     }
 
     // By how the ray slopes, without a look at what is filed in the cells.
@@ -213,8 +211,11 @@ private:
                 continue;
             }
             ray_.bound(part);
-            setCells(level, axis, low, high);
-            if (!read(level, false)) {
+            ray_.part().lowCell[axis] = low;
+            ray_.part().highCell[axis] = high;
+            const bool isEmpty =
+                !setCells(level, (axis + 1) % 3) || !setCells(level, (axis + 2) % 3);
+            if (!isEmpty && !read(level, false)) {
                 return false;
             }
         }
@@ -222,18 +223,12 @@ private:
     }
 
     [[nodiscard]] bool read(const Level<Scalar>& level, bool readsAll) {
-        const RayPart<Scalar>& part = ray_.part();
-        bool isEmpty = false;
-        for (std::size_t axis = 0; !readsAll && axis < 3; ++axis) {
-            isEmpty |= part.lowCell[axis] > part.highCell[axis];
-        }
-        if (isEmpty) {
-            return true;
-        }
+        ray_.aim();
         ray_.part().last = static_cast<Scalar>(ray_.lastFor(limit_));
         PairSink sink{found_.data(), found_.data(), &grow, this};
         sink.end += found_.size();
-        return kernels<Scalar>().queryRay(level, part, readsAll, sink, cost) && handOver(sink);
+        return kernels<Scalar>().queryRay(level, ray_.part(), readsAll, sink, cost) &&
+               handOver(sink);
     }
 
     static bool grow(PairSink& sink, std::size_t /*count*/) {

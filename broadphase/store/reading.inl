@@ -215,7 +215,9 @@ bool Store<Scalar>::searchAlong(const RayRegion<Scalar>& ray, const FiledTable<S
     }
     QueryCost walk;
     const bool goesOn = searchCells(table, ray, limit, take, walk);
-    writable(table).countWalk(kBoxesPerRun * walk.rowsVisited + walk.boxesTested);
+    if (walk.boxesTested > 0 || walk.rowsVisited > 0) {
+        writable(table).countWalk(kBoxesPerRun * walk.rowsVisited + walk.boxesTested);
+    }
     queryCost += walk;
     return goesOn;
 }
