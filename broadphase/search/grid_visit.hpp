@@ -206,7 +206,7 @@ template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
     using Reader = VisitReader<Region, Collector>;
     using Changes = detail::QueryScope::Changes;
-    const Reading reading = Reader::kIsLine ? store_.beginReadingInOrder() : store_.beginReading();
+    const Reading reading = Reader::kIsLine ? store_.beginReadingForRay() : store_.beginReading();
     const detail::QueryScope scope(&store_,
                                    Reader::kIsVolume ? Changes::forbidden : Changes::allowed);
     return visitTogether<Region, Collector>(reading, {&region, 1}, {&collector, 1},

@@ -18,6 +18,9 @@ namespace {
 // So few changes are read by each query without further ado.
 constexpr std::size_t kFewWait = 64;
 
+// A ray reads the list as dearly as so many boxes.
+constexpr std::size_t kBoxesPerRay = 3;
+
 // Where readers write: what they need and is not there yet is built, under a lock, or before any of them
 // has passed. The store is never a const object: it is created by its owner, and only seen as const. Neither
 // are its tables.
@@ -40,31 +43,13 @@ std::uint64_t Store<Scalar>::worthFiling() const noexcept {
 }
 
 template <class Scalar>
-auto Store<Scalar>::beginReading() const -> Reading {
+auto Store<Scalar>::beginReading(std::size_t weight) const -> Reading {
     mendTables();
     const std::size_t count = proxies.waiting.size();
     if (count > kFewWait && !tables.isFresh.load(std::memory_order_acquire) &&
-        countRead(count) > worthFiling()) {
-        writable(*this).fileFresh(Lock::tryOnce);
+        countRead(weight * count) > worthFiling()) {
+        writable(*this).fileFresh();
     }
-    return tables.reading();
-}
-
-// What goes from near to far offers all that is filed first, then the list: a short one. How long does not
-// depend on how many of them ask, so that each of many finds in the order in which it finds alone.
-template <class Scalar>
-void Store<Scalar>::expectRays(std::size_t count) const {
-    mendTables();
-    if (proxies.waiting.size() > kFewWait + tables.mobile.size() / 128 &&
-        !tables.isFresh.load(std::memory_order_acquire)) {
-        writable(*this).fileFresh(Lock::waitFor);
-    }
-    growTrees(tables.reading(), count);
-}
-
-template <class Scalar>
-auto Store<Scalar>::beginReadingInOrder() const -> Reading {
-    expectRays(1);
     return tables.reading();
 }
 
@@ -74,9 +59,22 @@ void Store<Scalar>::expectQueries(std::size_t count) const {
     if (proxies.waiting.size() > kFewWait && !tables.isFresh.load(std::memory_order_acquire)) {
         const std::uint64_t read = tables.waitingRead.load(std::memory_order_relaxed);
         if (count > (worthFiling() - std::min(worthFiling(), read)) / proxies.waiting.size()) {
-            writable(*this).fileFresh(Lock::tryOnce);
+            writable(*this).fileFresh();
         }
     }
+}
+
+template <class Scalar>
+void Store<Scalar>::expectRays(std::size_t count) const {
+    expectQueries(kBoxesPerRay * count);
+    growTrees(tables.reading(), count);
+}
+
+template <class Scalar>
+auto Store<Scalar>::beginReadingForRay() const -> Reading {
+    const Reading reading = beginReading(kBoxesPerRay);
+    growTrees(reading, 1);
+    return reading;
 }
 
 template <class Scalar>
@@ -114,17 +112,12 @@ void Store<Scalar>::mendTables() const {
 // Others may be reading the mobile table and the list, and go on with them. None reads the fresh one: since
 // it was last in use, something has changed. From within a query that is not so, and nothing is filed.
 template <class Scalar>
-void Store<Scalar>::fileFresh(Lock how) {
+void Store<Scalar>::fileFresh() {
     if (QueryScope::isWithin(this)) {
         return;
     }
-    std::unique_lock lock(tables.mutex, std::defer_lock);
-    if (how == Lock::waitFor) {
-        lock.lock();
-    } else if (!lock.try_lock()) {
-        return;
-    }
-    if (tables.isFresh.load(std::memory_order_relaxed)) {
+    const std::unique_lock lock(tables.mutex, std::try_to_lock);
+    if (!lock.owns_lock() || tables.isFresh.load(std::memory_order_relaxed)) {
         return;
     }
     if (tables.fresh == nullptr) {

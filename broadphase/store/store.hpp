@@ -166,9 +166,10 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
 
     // --- What queries read -----------------------------------------------------------------------
 
-    /// How queries begin. The tables may be read from then on.
-    [[nodiscard]] Reading beginReading() const;
-    [[nodiscard]] Reading beginReadingInOrder() const;
+    /// How queries begin, here one that reads the list as dearly as `weight` boxes. The tables may be read from
+    /// then on.
+    [[nodiscard]] Reading beginReading(std::size_t weight = 1) const;
+    [[nodiscard]] Reading beginReadingForRay() const;
     /// The same for so many queries, which begin together.
     [[nodiscard]] Reading beginReadings(std::size_t count) const;
     void expectQueries(std::size_t count) const;
@@ -182,8 +183,8 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
                      FunctionRef<double(std::span<const std::uint32_t>)> take,
                      QueryCost& queryCost) const;
     [[nodiscard]] std::uint64_t worthFiling() const noexcept;
-    enum class Lock : std::uint8_t { tryOnce, waitFor };
-    void fileFresh(Lock how);
+    /// Does nothing where another one is about it.
+    void fileFresh();
     void beforeChange() noexcept {
         if (tables.isFresh.load(std::memory_order_relaxed)) {
             takeFresh();
