@@ -201,6 +201,10 @@ public:
     /// that they cost the same in every run. Cost: O(1), or that of an update().
     void expectQueries(std::size_t count) const { store_.expectQueries(count); }
 
+    /// The same for rays: builds, too, what makes so many fast, if they may be worth it; those that come later
+    /// would. visitEach() does it by itself. Cost: O(1), or that of an update() and a sort of the proxies.
+    void expectRays(std::size_t count) const { store_.expectRays(count); }
+
     /// Cell query: which proxies are in the cell? Offers every proxy p with `cell` in cellsOf(p) to the
     /// collector. Cost: O(1) buckets; at most that of visit().
     template <class Collector>
@@ -229,10 +233,10 @@ public:
     /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Bytes that only rays read; 0 before the first ray. Part of memoryBytes().
+    /// Bytes that only rays read, where there are so many of them that it pays; else 0. Part of memoryBytes().
     [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
 
-    /// Frees what only rays read; the next ray builds it again. Not within a query (asserted).
+    /// Frees what only rays read; many rays build it again. Not within a query (asserted).
     void releaseRayMemory() noexcept;
 
     /// Gives back unused memory: room for more proxies than there are, and scratch, which the next update,

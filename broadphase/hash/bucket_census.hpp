@@ -56,9 +56,10 @@ public:
     }
 
     /// Whether the box is so much longer than most that it had better be tested with everyone than
-    /// make everyone look that much farther. Of the whole crowd, one in kLong at most.
+    /// make everyone look that much farther: of the whole crowd, one in kLong at most. So had an inverted
+    /// one, which a ray may meet before the corner by which it would be sorted.
     [[nodiscard]] bool isLong(const PaddedBox<Scalar>& box, std::size_t axis) const {
-        return box.high[axis] - box.low[axis] > longFrom_[axis];
+        return box.high[axis] - box.low[axis] > longFrom_[axis] || box.high[axis] < box.low[axis];
     }
 
     /// An edge [m] that none of these boxes exceeds along the axis, before rounding.

@@ -12,7 +12,6 @@
 #include <broadphase/core/radix_sort.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/search/join.hpp>
-#include <broadphase/search/ray_search.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -296,7 +295,7 @@ void ContactSearch<Scalar>::addMetByRay(const Reading<Scalar>& reading,
         }
         return 1.0;
     };
-    searchRay(filing.table->tree, region.segment(), 1.0, take, cost);
+    store_.searchAlong(region.segment(), *filing.table, 1.0, take, cost);
 }
 
 template <class Scalar>
@@ -306,7 +305,7 @@ void ContactSearch<Scalar>::meetStandingByRay(ParallelFor parallelFor) {
         return;
     }
     const Reading<Scalar> reading = store_.tables.reading();
-    store_.growTrees(reading);
+    store_.growTrees(reading, rays_.size());
     KernelCost cost;
     touchingNow_.clear();
     parts_.collect(parallelFor, rays_.size(), kGrain, touchingNow_, cost,

@@ -7,7 +7,6 @@
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/search/box_search.hpp>
-#include <broadphase/search/ray_search.hpp>
 #include <broadphase/search/volume_search.hpp>
 
 #include <algorithm>
@@ -39,7 +38,7 @@ struct Grid<Scalar>::VisitReader {
     /// Reads the tables. Returns false when a single collector wants no more.
     bool readTables(std::span<const Filing> filings) {
         if constexpr (kIsLine) {
-            return std::ranges::all_of(filings, [&](const Filing& f) { return readTree(f); });
+            return std::ranges::all_of(filings, [&](const Filing& f) { return readLine(f); });
         } else if constexpr (kIsVolume) {
             return std::ranges::all_of(filings, [&](const Filing& f) { return readVolume(f); });
         } else {
@@ -123,16 +122,16 @@ private:
         return true;
     }
 
-    bool readTree(const Filing& filing) {
+    bool readLine(const Filing& filing) {
         const Region& region = regions[0];
         const auto take = [&](std::span<const std::uint32_t> proxyIndices) {
-            // The tree is as old as its table: who stands there may have left.
+            // Whatever is listed in a table may have left it.
             const bool goesOn = offerIndices(
                 proxyIndices, [&](auto proxyIndex) { return isThere(filing, proxyIndex); },
                 [&](auto proxyIndex) { return region.key(store.proxies.records[proxyIndex].box); });
             return goesOn ? static_cast<double>(collectors[0].limit()) : -1.0;
         };
-        return detail::searchRay(filing.table->tree, region.segment(),
+        return store.searchAlong(region.segment(), *filing.table,
                                  static_cast<double>(collectors[0].limit()), take, cost);
     }
 
@@ -207,7 +206,7 @@ template <class Region, class Collector>
 QueryCost Grid<Scalar>::visit(const Region& region, Collector& collector) const {
     using Reader = VisitReader<Region, Collector>;
     using Changes = detail::QueryScope::Changes;
-    const Reading reading = Reader::kIsLine ? store_.beginReadingInOrder() : store_.beginReading();
+    const Reading reading = Reader::kIsLine ? store_.beginReadingForRay() : store_.beginReading();
     const detail::QueryScope scope(&store_,
                                    Reader::kIsVolume ? Changes::forbidden : Changes::allowed);
     return visitTogether<Region, Collector>(reading, {&region, 1}, {&collector, 1},
@@ -245,7 +244,7 @@ QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Col
     constexpr std::size_t atOnce = kHasBounds ? detail::QueryColumns<Scalar>::kMost : 1;
     const Reading reading = store_.beginReadings(regions.size());
     if constexpr (VisitReader<Region, Collector>::kIsLine) {
-        store_.growTrees(reading);
+        store_.growTrees(reading, regions.size());
     }
     detail::SharedCost shared;
     parallelFor(regions.size(), grain, [&](std::size_t begin, std::size_t end) {

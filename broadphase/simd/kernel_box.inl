@@ -101,6 +101,54 @@ private:
     typename Pack::Numbers inverse_[3];
 };
 
+/// The same for a ray. It may meet inverted boxes, as if they were the right way round.
+template <class Pack, class Scalar>
+class RayPartLanes {
+public:
+    explicit RayPartLanes(const RayPart<Scalar>& part) : last_(Pack::broadcast(part.last)) {
+        for (int k = 0; k < 3; ++k) {
+            lowFrom_[k] = Pack::broadcast(part.lowFrom[k]);
+            highFrom_[k] = Pack::broadcast(part.highFrom[k]);
+            inverse_[k] = Pack::broadcast(part.inverse[k]);
+        }
+    }
+
+    template <std::uint32_t kCount>
+    [[nodiscard]] std::uint32_t overlapMask(const Scalar* const* columns,
+                                            std::uint32_t first) const {
+        std::uint32_t mask = 0;
+        for (std::uint32_t k = 0; k < kCount; k += Pack::kWidth) {
+            mask |= maskOfPack(columns, first + k) << k;
+        }
+        return mask;
+    }
+
+private:
+    [[nodiscard]] std::uint32_t maskOfPack(const Scalar* const* columns,
+                                           std::uint32_t first) const {
+        auto enter = Pack::broadcast(0);
+        auto leave = last_;
+        for (int k = 0; k < 3; ++k) {
+            const auto min = Pack::load(columns[k] + first);
+            const auto max = Pack::load(columns[k + 3] + first);
+            const auto one =
+                Pack::times(Pack::minus(Pack::least(min, max), lowFrom_[k]), inverse_[k]);
+            const auto other =
+                Pack::times(Pack::minus(Pack::greatest(min, max), highFrom_[k]), inverse_[k]);
+            enter = Pack::greatest(Pack::least(one, other), enter);
+            leave = Pack::least(Pack::greatest(one, other), leave);
+        }
+        // What was erased is NaN, which has changed nothing.
+        const auto x = Pack::load(columns[0] + first);
+        return Pack::bits(Pack::bitAnd(Pack::lessEqual(enter, leave), Pack::lessEqual(x, x)));
+    }
+
+    typename Pack::Numbers lowFrom_[3];
+    typename Pack::Numbers highFrom_[3];
+    typename Pack::Numbers inverse_[3];
+    typename Pack::Numbers last_;
+};
+
 /// A box that is looked for: box `number` of six columns.
 template <class Scalar>
 struct Query {
@@ -155,6 +203,17 @@ struct SweptQuery : Query<Scalar> {
     template <class Pack>
     [[nodiscard]] SweptLanes<Pack, Scalar> lanes() const {
         return {Query<Scalar>::template lanes<Pack>(), *way};
+    }
+};
+
+/// The same for a part of a ray, of which the box is around.
+template <class Scalar>
+struct RayPartQuery : Query<Scalar> {
+    const RayPart<Scalar>* part;
+
+    template <class Pack>
+    [[nodiscard]] RayPartLanes<Pack, Scalar> lanes() const {
+        return RayPartLanes<Pack, Scalar>(*part);
     }
 };
 

@@ -199,6 +199,11 @@ struct Kernels {
                        const SweptBox<Scalar>* ways, const std::uint32_t* wayOf,
                        std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);
 
+    /// Finds (0, entry) for every entry in the cells of a part of a ray, or with `readsAll` every entry of
+    /// the level, that the ray may meet.
+    bool (*queryRay)(const Level<Scalar>& level, const RayPart<Scalar>& part, bool readsAll,
+                     PairSink& found, KernelCost& cost);
+
     /// As queryLevel(), sooner where boxes that follow each other are near each other.
     bool (*queryBatch)(const Level<Scalar>& level, const Scalar* const* queries,
                        std::uint32_t first, std::uint32_t last, PairSink& found, KernelCost& cost);

@@ -39,16 +39,8 @@ bool scanRows(const Level<Scalar>& level, const Query& query, const Lanes& box, 
 }
 
 template <bool kIsDense, class Scalar, class Query>
-[[gnu::flatten]] bool walkBox(const Level<Scalar>& level, const Query& query, PairSink& found,
-                              KernelCost& cost) {
-    const CellBlock block = blockAround(level, query);
-    if (block.isEmpty()) {
-        return true;
-    }
-    if (costsMoreThanFullScan<kIsDense>(level, block)) {
-        const Run all = {level.firstEntry, level.lastEntry};
-        return scan<true>(level, query, all, Row{}, found, cost.boxesTested);
-    }
+[[gnu::flatten]] bool walkBlock(const Level<Scalar>& level, const Query& query,
+                                const CellBlock& block, PairSink& found, KernelCost& cost) {
     cost.rowsVisited += block.rowCount();
     const auto box = query.template lanes<Pack<Scalar>>();
     Run runs[kWidth];
@@ -75,6 +67,23 @@ template <bool kIsDense, class Scalar, class Query>
 }
 
 template <class Scalar, class Query>
+bool walkAll(const Level<Scalar>& level, const Query& query, PairSink& found, KernelCost& cost) {
+    const Run all = {level.firstEntry, level.lastEntry};
+    return scan<true>(level, query, all, Row{}, found, cost.boxesTested);
+}
+
+template <bool kIsDense, class Scalar, class Query>
+bool walkBox(const Level<Scalar>& level, const Query& query, PairSink& found, KernelCost& cost) {
+    const CellBlock block = blockAround(level, query);
+    if (block.isEmpty()) {
+        return true;
+    }
+    return costsMoreThanFullScan<kIsDense>(level, block)
+               ? walkAll(level, query, found, cost)
+               : walkBlock<kIsDense>(level, query, block, found, cost);
+}
+
+template <class Scalar, class Query>
 bool walk(const Level<Scalar>& level, const Query& query, PairSink& found, KernelCost& cost) {
     switch (level.kind) {
         case LevelKind::dense:
@@ -84,8 +93,7 @@ bool walk(const Level<Scalar>& level, const Query& query, PairSink& found, Kerne
         case LevelKind::list:
             break;
     }
-    const Run all = {level.firstEntry, level.lastEntry};
-    return scan<true>(level, query, all, Row{}, found, cost.boxesTested);
+    return walkAll(level, query, found, cost);
 }
 
 template <class Scalar>
@@ -114,4 +122,19 @@ bool querySwept(const Level<Scalar>& level, const Scalar* const* queries,
         goesOn = walk(level, query, found, cost);
     }
     return goesOn;
+}
+
+template <class Scalar>
+bool queryRay(const Level<Scalar>& level, const RayPart<Scalar>& part, bool readsAll,
+              PairSink& found, KernelCost& cost) {
+    const Scalar* const columns[6] = {&part.bounds[0], &part.bounds[1], &part.bounds[2],
+                                      &part.bounds[3], &part.bounds[4], &part.bounds[5]};
+    const RayPartQuery<Scalar> query{{columns, 0}, &part};
+    if (readsAll) {
+        return walkAll(level, query, found, cost);
+    }
+    const CellBlock block = {{part.lowCell[0], part.lowCell[1], part.lowCell[2]},
+                             {part.highCell[0], part.highCell[1], part.highCell[2]}};
+    return level.isDense() ? walkBlock<true>(level, query, block, found, cost)
+                           : walkBlock<false>(level, query, block, found, cost);
 }

@@ -31,6 +31,20 @@ struct RayLanes {
     float farInverse[3];  // the least bit longer than `inverse`
 };
 
+/// A part of a ray, or of a box moved along it, as a search of cells sees it: position t in [0, last] is in
+/// the slab of an axis between (low bound - lowFrom) * inverse and (high bound - highFrom) * inverse.
+template <class Scalar>
+struct RayPart {
+    Scalar lowFrom[3];
+    Scalar highFrom[3];
+    Scalar inverse[3];
+    Scalar last;
+    // What it meets overlaps these bounds, min x, y, z, max x, y, z, and lies in these cells.
+    Scalar bounds[6];
+    std::int32_t lowCell[3];
+    std::int32_t highCell[3];
+};
+
 /// Where a kernel brings what a ray may meet: take(sink, indices, count) takes that of one block,
 /// from near to far, and may make `last` smaller; false ends the search.
 struct RaySink {

@@ -6,6 +6,9 @@
 
 #include <broadphase/store/store.hpp>
 
+#include <broadphase/search/ray_search.hpp>
+#include <broadphase/search/ray_walk.hpp>
+
 #include <algorithm>
 #include <utility>
 
@@ -15,11 +18,15 @@ namespace {
 // So few changes are read by each query without further ado.
 constexpr std::size_t kFewWait = 64;
 
+// A ray reads the list as dearly as so many boxes.
+constexpr std::size_t kBoxesPerRay = 3;
+
 // Where readers write: what they need and is not there yet is built, under a lock, or before any of them
-// has passed. The store is never a const object: it is created by its owner, and only seen as const.
-template <class Scalar>
-Store<Scalar>& writable(const Store<Scalar>& store) {
-    return const_cast<Store<Scalar>&>(store);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+// has passed. The store is never a const object: it is created by its owner, and only seen as const. Neither
+// are its tables.
+template <class T>
+T& writable(const T& what) {
+    return const_cast<T&>(what);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
 }
 
 }  // namespace
@@ -36,28 +43,14 @@ std::uint64_t Store<Scalar>::worthFiling() const noexcept {
 }
 
 template <class Scalar>
-auto Store<Scalar>::beginReading() const -> Reading {
+auto Store<Scalar>::beginReading(std::size_t weight) const -> Reading {
     mendTables();
     const std::size_t count = proxies.waiting.size();
     if (count > kFewWait && !tables.isFresh.load(std::memory_order_acquire) &&
-        countRead(count) > worthFiling()) {
-        writable(*this).fileFresh(Lock::tryOnce);
+        countRead(weight * count) > worthFiling()) {
+        writable(*this).fileFresh();
     }
     return tables.reading();
-}
-
-// What goes from near to far offers all that is filed first, then the list: a short one. How long does not
-// depend on how many of them ask, so that each of many finds in the order in which it finds alone.
-template <class Scalar>
-auto Store<Scalar>::beginReadingInOrder() const -> Reading {
-    mendTables();
-    if (proxies.waiting.size() > kFewWait + tables.mobile.size() / 128 &&
-        !tables.isFresh.load(std::memory_order_acquire)) {
-        writable(*this).fileFresh(Lock::waitFor);
-    }
-    const Reading reading = tables.reading();
-    growTrees(reading);
-    return reading;
 }
 
 template <class Scalar>
@@ -66,9 +59,22 @@ void Store<Scalar>::expectQueries(std::size_t count) const {
     if (proxies.waiting.size() > kFewWait && !tables.isFresh.load(std::memory_order_acquire)) {
         const std::uint64_t read = tables.waitingRead.load(std::memory_order_relaxed);
         if (count > (worthFiling() - std::min(worthFiling(), read)) / proxies.waiting.size()) {
-            writable(*this).fileFresh(Lock::tryOnce);
+            writable(*this).fileFresh();
         }
     }
+}
+
+template <class Scalar>
+void Store<Scalar>::expectRays(std::size_t count) const {
+    expectQueries(kBoxesPerRay * count);
+    growTrees(tables.reading(), count);
+}
+
+template <class Scalar>
+auto Store<Scalar>::beginReadingForRay() const -> Reading {
+    const Reading reading = beginReading(kBoxesPerRay);
+    growTrees(reading, 1);
+    return reading;
 }
 
 template <class Scalar>
@@ -106,17 +112,12 @@ void Store<Scalar>::mendTables() const {
 // Others may be reading the mobile table and the list, and go on with them. None reads the fresh one: since
 // it was last in use, something has changed. From within a query that is not so, and nothing is filed.
 template <class Scalar>
-void Store<Scalar>::fileFresh(Lock how) {
+void Store<Scalar>::fileFresh() {
     if (QueryScope::isWithin(this)) {
         return;
     }
-    std::unique_lock lock(tables.mutex, std::defer_lock);
-    if (how == Lock::waitFor) {
-        lock.lock();
-    } else if (!lock.try_lock()) {
-        return;
-    }
-    if (tables.isFresh.load(std::memory_order_relaxed)) {
+    const std::unique_lock lock(tables.mutex, std::try_to_lock);
+    if (!lock.owns_lock() || tables.isFresh.load(std::memory_order_relaxed)) {
         return;
     }
     if (tables.fresh == nullptr) {
@@ -178,25 +179,40 @@ void Store<Scalar>::forgetErased() noexcept {
     }
 }
 
-// As mendTables(): no ray passes before it is done.
+// Others may be walking the cells of the tables, and go on with them.
 template <class Scalar>
-void Store<Scalar>::growTrees(const Reading& reading) const {
-    const auto isStale = [](const Filing& filing) {
-        return filing.table->isTreeStale.load(std::memory_order_acquire);
-    };
-    if (std::ranges::none_of(reading.filings(), isStale)) {
+void Store<Scalar>::growTrees(const Reading& reading, std::size_t rayCount) const {
+    const auto lacksTree = [&](const Filing& filing) { return filing.table->lacksTree(rayCount); };
+    if (rayCount == 0 || std::ranges::none_of(reading.filings(), lacksTree)) {
         return;
     }
     auto& self = writable(*this);
     const std::lock_guard lock(self.tables.mutex);
     Tables<Scalar>::forAll(self.tables, [&](FiledTable<Scalar>& table) {
         const auto isRead = [&](const Filing& filing) { return filing.table == &table; };
-        if (std::ranges::any_of(reading.all, isRead) &&
-            table.isTreeStale.load(std::memory_order_relaxed)) {
+        if (std::ranges::any_of(reading.all, isRead) && table.lacksTree(rayCount)) {
             table.tree.build(table);
             table.isTreeStale.store(false, std::memory_order_release);
         }
     });
+}
+
+// By which of the two changes the order in which boxes are found, and not which.
+template <class Scalar>
+bool Store<Scalar>::searchAlong(const RayRegion<Scalar>& ray, const FiledTable<Scalar>& table,
+                                double limit,
+                                FunctionRef<double(std::span<const std::uint32_t>)> take,
+                                QueryCost& queryCost) const {
+    if (!table.isTreeStale.load(std::memory_order_acquire)) {
+        return searchRay(table.tree, ray, limit, take, queryCost);
+    }
+    QueryCost walk;
+    const bool goesOn = searchCells(table, ray, limit, take, walk);
+    if (walk.boxesTested > 0 || walk.rowsVisited > 0) {
+        writable(table).countWalk(kBoxesPerRun * walk.rowsVisited + walk.boxesTested);
+    }
+    queryCost += walk;
+    return goesOn;
 }
 
 }  // namespace hashphase::detail

@@ -6,10 +6,13 @@
 
 #include <broadphase/core/peak_watch.hpp>
 #include <broadphase/core/query_scope.hpp>
+#include <broadphase/function_ref.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/store/move_scratch.hpp>
+#include <broadphase/query_cost.hpp>
+#include <broadphase/regions.hpp>
 #include <broadphase/store/population.hpp>
 #include <broadphase/store/settling.hpp>
 #include <broadphase/store/tables.hpp>
@@ -19,6 +22,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -187,18 +191,25 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
 
     // --- What queries read -----------------------------------------------------------------------
 
-    /// How queries begin. The tables may be read from then on.
-    [[nodiscard]] Reading beginReading() const;
-    [[nodiscard]] Reading beginReadingInOrder() const;
+    /// How queries begin, here one that reads the list as dearly as `weight` boxes. The tables may be read from
+    /// then on.
+    [[nodiscard]] Reading beginReading(std::size_t weight = 1) const;
+    [[nodiscard]] Reading beginReadingForRay() const;
     /// The same for so many queries, which begin together.
     [[nodiscard]] Reading beginReadings(std::size_t count) const;
     void expectQueries(std::size_t count) const;
+    void expectRays(std::size_t count) const;
     std::uint64_t countRead(std::size_t count) const noexcept;
     void mendTables() const;
-    void growTrees(const Reading& reading) const;
+    /// Builds the trees that so many rays, which begin together, are worth.
+    void growTrees(const Reading& reading, std::size_t rayCount) const;
+    /// searchRay() in the table's tree, or in its cells where it is stale.
+    bool searchAlong(const RayRegion<Scalar>& ray, const FiledTable<Scalar>& table, double limit,
+                     FunctionRef<double(std::span<const std::uint32_t>)> take,
+                     QueryCost& queryCost) const;
     [[nodiscard]] std::uint64_t worthFiling() const noexcept;
-    enum class Lock : std::uint8_t { tryOnce, waitFor };
-    void fileFresh(Lock how);
+    /// Does nothing where another one is about it.
+    void fileFresh();
     void beforeChange() noexcept {
         if (tables.isFresh.load(std::memory_order_relaxed)) {
             takeFresh();

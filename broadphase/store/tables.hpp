@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Where proxies are filed: the tables that searches read, each with its tree for rays.
+// Where proxies are filed: the tables that searches read, each with its tree for many rays.
 
 #include <broadphase/core/group_kinds.hpp>
 #include <broadphase/hash/table.hpp>
 #include <broadphase/tree/box_tree.hpp>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -18,11 +19,12 @@
 
 namespace hashphase::detail {
 
-/// A table and what rays read of it; made by the first ray after the table was built.
+/// A table and its tree, which is made when so many rays have come since the table was built that it pays.
 template <class Scalar>
 struct FiledTable : Table<Scalar> {
     BoxTree tree;
     std::atomic<bool> isTreeStale{false};
+    std::atomic<std::uint64_t> walked{0};  // what rays have cost meanwhile, in boxes tested
 
     /// Table::build().
     void file(std::span<const std::uint32_t> proxyIndices, std::span<const PaddedBox<Scalar>> boxes,
@@ -34,7 +36,24 @@ struct FiledTable : Table<Scalar> {
     [[nodiscard]] std::string validateTree() const {
         return isTreeStale.load(std::memory_order_relaxed) ? std::string() : tree.validate();
     }
-    void makeTreeStale() noexcept { isTreeStale.store(true, std::memory_order_relaxed); }
+    void makeTreeStale() noexcept {
+        walked.store(0, std::memory_order_relaxed);
+        isTreeStale.store(true, std::memory_order_relaxed);
+    }
+    /// What a ray has cost; it counts as if it had tested each box once at most.
+    void countWalk(std::uint64_t boxesTested) noexcept {
+        walked.fetch_add(std::min<std::uint64_t>(boxesTested, this->size()),
+                         std::memory_order_relaxed);
+    }
+    /// Whether the tree is to be made before so many rays begin: when those before them, and all but the last
+    /// of them, may have cost as much as the tree. One by one, rays and tree cost at most twice the least
+    /// there is. Of many that begin together none makes it.
+    [[nodiscard]] bool lacksTree(std::size_t rayCount) const noexcept {
+        constexpr std::uint64_t kTree = 48;  // boxes tested, for each that is filed
+        return isTreeStale.load(std::memory_order_acquire) &&
+               walked.load(std::memory_order_relaxed) + (rayCount - 1) * this->size() >=
+                   kTree * (this->size() + std::uint64_t{64});
+    }
     void swap(FiledTable& other) noexcept {
         std::swap(static_cast<Table<Scalar>&>(*this), static_cast<Table<Scalar>&>(other));
         std::swap(tree, other.tree);
@@ -42,6 +61,9 @@ struct FiledTable : Table<Scalar> {
         isTreeStale.store(other.isTreeStale.load(std::memory_order_relaxed),
                           std::memory_order_relaxed);
         other.isTreeStale.store(isStale, std::memory_order_relaxed);
+        other.walked.store(walked.exchange(other.walked.load(std::memory_order_relaxed),
+                                           std::memory_order_relaxed),
+                           std::memory_order_relaxed);
     }
 };
 

@@ -147,6 +147,7 @@ void SpatialHashBroadphase::rayTest(const btVector3& rayFrom, const btVector3& r
 }
 
 void SpatialHashBroadphase::rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor) {
+    grid_.expectRays(rays.size());
     parallelFor(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (const BroadphaseRay& ray : rays.subspan(begin, end - begin)) {
             HASHPHASE_ASSERT(ray.callback != nullptr, "Each ray has a callback.");
@@ -167,6 +168,7 @@ QueryCost SpatialHashBroadphase::closestRay(const btVector3& from, const btVecto
 
 void SpatialHashBroadphase::closestRays(std::span<const ClosestRay> rays,
                                         ParallelFor parallelFor) const {
+    grid_.expectRays(rays.size());
     parallelFor(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         for (const ClosestRay& ray : rays.subspan(begin, end - begin)) {
             HASHPHASE_ASSERT(ray.callback != nullptr, "Each ray has a callback.");

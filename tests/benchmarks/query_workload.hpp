@@ -11,9 +11,9 @@ namespace hashphase::benchmarks {
 /// What the query workloads have in common: broadphases of Bullet's kind, and their answers.
 class QueryWorkload : public Workload {
 public:
-    /// Where the scene moves, all boxes are set before each frame.
-    QueryWorkload(std::unique_ptr<demos::BoxScene> scene, bool moves)
-        : scene_(std::move(scene)), moves_(moves) {}
+    /// Where the scene moves, all boxes are set before each frame, or in it, as part of what is timed.
+    QueryWorkload(std::unique_ptr<demos::BoxScene> scene, bool moves, bool timesUpdate = false)
+        : scene_(std::move(scene)), moves_(moves), timesUpdate_(timesUpdate) {}
 
     [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
         return std::make_unique<Asking>(*this, kind);
@@ -44,17 +44,26 @@ private:
             : workload_(workload), filled_(filledWith(workload.scene_, *kind.bullet)) {}
 
         void beginFrame() override {
-            if (workload_.moves_) {
-                filled_->setAll(workload_.scene_.frame().bulletBoxes);
-                filled_->findPairs();
+            if (workload_.moves_ && !workload_.timesUpdate_) {
+                update();
             }
             answers_.clear();
         }
-        void run() override { workload_.ask(*filled_, answers_); }
+        void run() override {
+            if (workload_.moves_ && workload_.timesUpdate_) {
+                update();
+            }
+            workload_.ask(*filled_, answers_);
+        }
         void listAnswers(std::vector<Answer>& answers) override { answers = answers_; }
         void endFrame() override { workload_.afterFrame(*filled_); }
 
     private:
+        void update() {
+            filled_->setAll(workload_.scene_.frame().bulletBoxes);
+            filled_->findPairs();
+        }
+
         QueryWorkload& workload_;
         std::unique_ptr<demos::FilledBroadphase> filled_;
         std::vector<Answer> answers_;
@@ -62,6 +71,7 @@ private:
 
     SceneBoxes scene_;
     bool moves_;
+    bool timesUpdate_;
 };
 
 /// Hash and dbvt take part.

@@ -15,6 +15,9 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace hashphase::benchmarks {
 namespace {
@@ -52,6 +55,28 @@ Ray shortened(const Ray& ray, float length) {
 Ray shortRay(Random& random, const Boxes& boxes) {
     constexpr float kShort = 5;  // [m]
     return shortened(rayBetweenBoxes(random, boxes), kShort);
+}
+
+// What a wheel or a foot stands on: straight down from a box, a few of its edges.
+Ray rayBelowBox(Random& random, const Boxes& boxes) {
+    constexpr float kFewEdges = 3;
+    const Aabb<float>& box = anyBox(random.unit(), boxes);
+    const btVector3 from = toBullet(box.center());
+    return {from, from - btVector3(0, kFewEdges * box.sizes().mean(), 0)};
+}
+
+Ray rayOf30Edges(Random& random, const Boxes& boxes) {
+    const float edge = anyBox(random.unit(), boxes).sizes().mean();
+    return shortened(rayBetweenBoxes(random, boxes), 30 * edge);
+}
+
+// From as far east as one box and as far north as another: where mostly nothing is. To any box, but 100 m at
+// most.
+Ray rayFromNowhere(Random& random, const Boxes& boxes) {
+    btVector3 from = toBullet(anyBox(random.unit(), boxes).center());
+    from.setZ(anyBox(random.unit(), boxes).center().z());
+    const btVector3 to = toBullet(anyBox(random.unit(), boxes).center());
+    return shortened({from, to}, std::min(to.distance(from), 100.0F));
 }
 
 // A shot across the country: from eye level above one walker to the feet of another, up to 100 m on.
@@ -207,21 +232,22 @@ struct Question {
 
 // --- The workload ----------------------------------------------------------------------------------
 
-/// What moves: nothing, everything before each frame, or one box before each question, as a game does that
-/// moves its characters one by one; then pairs are found after the frame, untimed.
-enum class Moves { nothing, all, oneByOne };
+/// What moves: nothing, everything before each frame or as a part of it, or one box before each question, as
+/// a game does that moves its characters one by one; then pairs are found after the frame, untimed.
+enum class Moves { nothing, all, allTimed, oneByOne };
 
 class RayWorkload final : public QueryWorkload {
 public:
     RayWorkload(std::unique_ptr<demos::BoxScene> scene, Question question, DrawRay draw,
-                Moves moves, std::uint64_t seed)
-        : QueryWorkload(std::move(scene), moves == Moves::all),
+                Moves moves, std::size_t count, std::uint64_t seed)
+        : QueryWorkload(std::move(scene), moves == Moves::all || moves == Moves::allTimed,
+                        moves == Moves::allTimed),
           question_(question),
           draw_(draw),
           areBoxesSet_(moves == Moves::oneByOne),
           random_(seed),
           boxesAtEnd_(this->scene().boxes()),
-          steps_(areBoxesSet_ ? 200 : 500) {}
+          steps_(count) {}
 
     void listExactAnswers(std::vector<Answer>& answers) override {
         answers.clear();
@@ -297,8 +323,48 @@ Benchmark rays(const char* name, const char* description, MakeScene makeScene, D
             .admits = answersQueries,
             .make = [=](std::size_t objects, std::uint64_t seed) {
                 return std::make_unique<RayWorkload>(makeScene(objects, seed), question, draw,
-                                                     moves, ~seed);
+                                                     moves, areBoxesSet ? 200 : 500, ~seed);
             }};
+}
+
+// So many rays after each step in which everything moves; by themselves, or with the update.
+std::vector<Benchmark> rayStepBenchmarks() {
+    struct Length {
+        std::string_view name;
+        std::string_view description;
+        DrawRay draw;
+    };
+    std::vector<Benchmark> all;
+    for (const auto& [name, description, draw] :
+         {Length{"short", "from boxes to 3 edges below", rayBelowBox},
+          Length{"medium", "of 30 edges", rayOf30Edges},
+          Length{"long", "from box to box", rayBetweenBoxes}}) {
+        for (const std::string_view scene : {"uniform", "trembling"}) {
+            for (const std::size_t count : {1, 4, 40, 500}) {
+                for (const Moves moves : {Moves::all, Moves::allTimed}) {
+                    const bool isTimed = moves == Moves::allTimed;
+                    const std::string rays =
+                        std::to_string(count) + "-" + std::string(name) + "-" + std::string(scene);
+                    all.push_back({.name = (isTimed ? "step-and-rays-" : "rays-after-step-") + rays,
+                                   .group = "queries",
+                                   .description = std::to_string(count) + " rays " +
+                                                  std::string(description) + ", after each step" +
+                                                  (isTimed ? ", which is timed, too" : ""),
+                                   .operation = isTimed ? "step" : "ray",
+                                   .sizes = {300, 1'000, 3'000, 30'000},
+                                   .onRequest = true,
+                                   .admits = answersQueries,
+                                   .make = [=, makeScene = sceneNamed(scene)](std::size_t objects,
+                                                                              std::uint64_t seed) {
+                                       return std::make_unique<RayWorkload>(
+                                           makeScene(objects, seed), Question{}, draw, moves, count,
+                                           ~seed);
+                                   }});
+                }
+            }
+        }
+    }
+    return all;
 }
 
 }  // namespace
@@ -306,28 +372,36 @@ Benchmark rays(const char* name, const char* description, MakeScene makeScene, D
 std::vector<Benchmark> rayBenchmarks() {
     const MakeScene dense = brownian(demos::uniformBoxes);
     const MakeScene sparse = cubesIn(Vector3<float>::Constant(3000), 0.5F, 0.2F);
-    return {rays("rays-dense-short", "rays of 5 m among uniform boxes", dense, shortRay),
-            rays("rays-dense-long", "rays across a cube of uniform boxes", dense, rayBetweenBoxes),
-            rays("rays-sparse", "long rays through a nearly empty cube of 3,000 m", sparse,
-                 rayBetweenBoxes),
-            rays("rays-piles", "rays from pile to pile, over 10 x 10 km",
-                 brownian(demos::pileBoxes), rayBetweenBoxes),
-            rays("rays-terrain", "shots of up to 100 m across the paper's terrain, all moving",
-                 sceneNamed("paper"), rayOverTerrain, {}, Moves::all),
-            rays("rays-closest", "rays-dense-long, but only the nearest box is wanted", dense,
-                 rayBetweenBoxes, {Probe::closest}),
-            rays("picking", "all boxes under the pointer, 500 times, among uniform boxes", dense,
-                 rayThroughPixel),
-            rays("picking-closest", "picking, but only the nearest box is wanted", dense,
-                 rayThroughPixel, {Probe::closest}),
-            rays("rays-fat", "a box of 1 m cast 5 m far among uniform boxes", dense, shortRay,
-                 {Probe::ray, btVector3(0.5F, 0.5F, 0.5F)}),
-            rays("boxes", "what overlaps a box of 2 m, one box at a time, among uniform boxes",
-                 dense, rayBetweenBoxes, {Probe::box}),
-            rays("interleaved-rays", "set one box, cast one ray, set the next", dense, shortRay, {},
-                 Moves::oneByOne),
-            rays("interleaved-boxes", "set one box, ask for one box, set the next", dense, shortRay,
-                 {Probe::box}, Moves::oneByOne)};
+    std::vector<Benchmark> all = rayStepBenchmarks();
+    for (Benchmark& benchmark : std::vector{
+             rays("rays-dense-short", "rays of 5 m among uniform boxes", dense, shortRay),
+             rays("rays-dense-long", "rays across a cube of uniform boxes", dense, rayBetweenBoxes),
+             rays("rays-sparse", "long rays through a nearly empty cube of 3,000 m", sparse,
+                  rayBetweenBoxes),
+             rays("rays-piles", "rays from pile to pile, over 10 x 10 km",
+                  brownian(demos::pileBoxes), rayBetweenBoxes),
+             rays("rays-between-piles",
+                  "rays of 100 m between these piles, most of which hit nothing",
+                  brownian(demos::pileBoxes), rayFromNowhere),
+             rays("rays-terrain", "shots of up to 100 m across the paper's terrain, all moving",
+                  sceneNamed("paper"), rayOverTerrain, {}, Moves::all),
+             rays("rays-closest", "rays-dense-long, but only the nearest box is wanted", dense,
+                  rayBetweenBoxes, {Probe::closest}),
+             rays("picking", "all boxes under the pointer, 500 times, among uniform boxes", dense,
+                  rayThroughPixel),
+             rays("picking-closest", "picking, but only the nearest box is wanted", dense,
+                  rayThroughPixel, {Probe::closest}),
+             rays("rays-fat", "a box of 1 m cast 5 m far among uniform boxes", dense, shortRay,
+                  {Probe::ray, btVector3(0.5F, 0.5F, 0.5F)}),
+             rays("boxes", "what overlaps a box of 2 m, one box at a time, among uniform boxes",
+                  dense, rayBetweenBoxes, {Probe::box}),
+             rays("interleaved-rays", "set one box, cast one ray, set the next", dense, shortRay,
+                  {}, Moves::oneByOne),
+             rays("interleaved-boxes", "set one box, ask for one box, set the next", dense,
+                  shortRay, {Probe::box}, Moves::oneByOne)}) {
+        all.push_back(std::move(benchmark));
+    }
+    return all;
 }
 
 }  // namespace hashphase::benchmarks

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Zlib
 
-// The tree that rays read, its kernel, and the ray as it reads it.
+// The tree that rays read, its kernel, and the ray as it reads it. In all its boxes, rays walk through the
+// cells, too.
 
 #include <broadphase/search/ray_search.hpp>
+#include <broadphase/search/ray_walk.hpp>
 #include <broadphase/simd/kernels.hpp>
 #include <broadphase/tree/box_tree.hpp>
 #include <broadphase/tree/hilbert.hpp>
@@ -79,6 +81,20 @@ protected:
         EXPECT_EQ(std::adjacent_find(slots.begin(), slots.end()), slots.end());
         return slots;
     }
+    /// Those that the cells offer, each once, sorted.
+    Slots walkCells(const Ray& ray, double limit) {
+        Slots slots;
+        QueryCost cost;
+        const auto take = [&](std::span<const std::uint32_t> some) {
+            slots.insert(slots.end(), some.begin(), some.end());
+            return limit;
+        };
+        EXPECT_TRUE(searchCells(table_, ray, limit, take, cost));
+        EXPECT_LE(slots.size(), cost.boxesTested);
+        std::sort(slots.begin(), slots.end());
+        EXPECT_EQ(std::adjacent_find(slots.begin(), slots.end()), slots.end());
+        return slots;
+    }
     /// How many a ray is offered that is as thick as the world.
     std::size_t countAll() {
         const auto half = Vector3<Scalar>::Constant(99);
@@ -88,12 +104,14 @@ protected:
     /// All that the region's key() finds is offered. Returns how much more is.
     std::size_t expectNoneMissed(const Ray& ray, double limit = 1) {
         const Slots offered = walk(ray, limit);
+        const Slots offeredByCells = walkCells(ray, limit);
         std::size_t found = 0;
         for (std::uint32_t slot = 0; slot < boxes_.size(); ++slot) {
             const Scalar key = ray.key(boxes_[slot]);
             if (key >= 0 && static_cast<double>(key) <= limit) {
                 ++found;
-                EXPECT_TRUE(std::binary_search(offered.begin(), offered.end(), slot))
+                EXPECT_TRUE(std::binary_search(offered.begin(), offered.end(), slot) &&
+                            std::binary_search(offeredByCells.begin(), offeredByCells.end(), slot))
                     << "box " << boxes_[slot].min().transpose() << ", "
                     << boxes_[slot].max().transpose() << "; ray from " << ray.from().transpose()
                     << " along " << ray.direction().transpose();

@@ -104,6 +104,7 @@ TYPED_TEST(RayQuery, MakesAnewWhatWasFreed) {
     world.add(makeBox<TypeParam>(0, 0, 0, 1, 1, 1));
     world.update();
     for (int round = 0; round < 3; ++round) {
+        world.grid.expectRays(10'000);
         EXPECT_EQ(world.expectLikeBruteForce(RayRegion<TypeParam>({-1, 0, 0}, {2, 0, 0})), 1U);
         EXPECT_GT(world.grid.rayMemoryBytes(), 0U);
         world.grid.releaseRayMemory();
@@ -183,13 +184,97 @@ TYPED_TEST(RayBatch, CostsAGridThatIsAskedForNoRaysNothing) {
     grid.visit(make.sphere(), count);
     EXPECT_EQ(grid.memoryBytes(), bytes);
     grid.visit(make.ray(), count);
+    EXPECT_EQ(grid.memoryBytes(), bytes);
+    grid.expectRays(1000);
     const std::size_t withTrees = grid.memoryBytes();
     EXPECT_GT(withTrees, bytes);
     // Trees, and what it takes to make them, are a fixed number of bytes a proxy.
     EXPECT_LT(withTrees, bytes + 160 * 3000);
     this->world_.update();
-    grid.visit(make.ray(), count);
+    grid.expectRays(1000);
     EXPECT_EQ(grid.memoryBytes(), withTrees);
+}
+
+// Rays cost what they walk until that is worth a tree, however they come.
+TYPED_TEST(RayBatch, GetATreeWhenTheyHaveCostAsMuch) {
+    auto& world = this->world_;
+    RegionMaker<TypeParam> make(world.random, world.proxies);
+    world.grid.expectRays(4);
+    CollectCount count;
+    std::uint64_t read = 0;
+    for (int i = 0; i < 5000 && world.grid.rayMemoryBytes() == 0; ++i) {
+        const QueryCost cost = world.grid.visit(make.ray(), count);
+        read += 4 * cost.rowsVisited + cost.boxesTested;
+    }
+    EXPECT_GT(world.grid.rayMemoryBytes(), 0U);
+    EXPECT_GE(read, 48U * 3000U);
+    EXPECT_LT(read, 48U * 3064U + 2U * 3000U);
+    const QueryCost inTree = world.grid.visit(make.ray(), count);
+    EXPECT_LT(inTree.boxesTested, 300U);
+
+    std::vector<RayRegion<TypeParam>> rays;
+    for (int i = 0; i < 60; ++i) {
+        rays.push_back(make.ray());
+    }
+    for (const std::size_t some : {0U, 40U, 60U}) {
+        world.grid.releaseRayMemory();
+        std::vector<CollectCount> counts(some);
+        world.grid.visitEach(std::span<const RayRegion<TypeParam>>(rays).first(some),
+                             std::span(counts), forOnTwoThreads);
+        EXPECT_EQ(world.grid.rayMemoryBytes() > 0, some == 60) << some;
+    }
+}
+
+// A ray from within a ray makes the trees while the outer one walks through the cells.
+TYPED_TEST(RayBatch, MayBeginWithinARayThatWalks) {
+    auto& world = this->world_;
+    const RayRegion<TypeParam> ray({-12, -12, -12}, {12, 12, 12});
+    const auto expected = find(world.grid, ray);
+    ASSERT_GT(expected.size(), 3U);
+    struct Nested {
+        const Grid<TypeParam>& grid;
+        const RayRegion<TypeParam>& ray;
+        CollectKeys<TypeParam> own;
+        CollectKeys<TypeParam> inner;
+
+        void add(ProxyId id, TypeParam key) {
+            grid.expectRays(1000);
+            inner = {};
+            grid.visit(ray, inner);
+            own.add(id, key);
+        }
+        [[nodiscard]] static double limit() { return 1; }
+    };
+    world.grid.releaseRayMemory();
+    Nested nested{world.grid, ray, {}, {}};
+    world.grid.visit(ray, nested);
+    EXPECT_GT(world.grid.rayMemoryBytes(), 0U);
+    EXPECT_EQ(differences(nested.own.sorted(), expected), "");
+    EXPECT_EQ(differences(nested.inner.sorted(), expected), "");
+}
+
+// One of them makes the trees, the others go on in cells or in trees.
+TYPED_TEST(RayBatch, FindTheSameOnSeveralThreadsWheneverTheTreesAreMade) {
+    auto& world = this->world_;
+    RegionMaker<TypeParam> make(world.random, world.proxies);
+    std::vector<RayRegion<TypeParam>> rays;
+    for (int i = 0; i < 2000; ++i) {
+        rays.push_back(make.ray(i % 3 == 0));
+    }
+    std::vector<std::size_t> counts(rays.size());
+    forOnTwoThreads(rays.size(), 10, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            CollectCount count;
+            world.grid.visit(rays[i], count);
+            counts[i] = count.count();
+        }
+    });
+    EXPECT_GT(world.grid.rayMemoryBytes(), 0U);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        CollectCount expected;
+        visitByBruteForce<TypeParam>(world.proxies, rays[i], expected);
+        ASSERT_EQ(counts[i], expected.count()) << i;
+    }
 }
 
 }  // namespace

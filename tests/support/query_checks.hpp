@@ -43,6 +43,11 @@ struct QueryCheck {
     static std::size_t expectLikeBruteForce(const Grid<Scalar>& grid,
                                             std::span<const Placed<Scalar>> proxies,
                                             const Region& region);
+
+private:
+    static std::size_t expectOnceLikeBruteForce(const Grid<Scalar>& grid,
+                                                std::span<const Placed<Scalar>> proxies,
+                                                const Region& region);
 };
 
 template <class Scalar, class Region>
@@ -59,6 +64,18 @@ typename CollectKeys<Scalar>::Found QueryCheck<Scalar, Region>::find(const Grid<
 
 template <class Scalar, class Region>
 std::size_t QueryCheck<Scalar, Region>::expectLikeBruteForce(
+    const Grid<Scalar>& grid, std::span<const Placed<Scalar>> proxies, const Region& region) {
+    const std::size_t count = expectOnceLikeBruteForce(grid, proxies, region);
+    // Few rays walk through cells. From now on they walk through trees, until something is filed.
+    if (requires { region.segment(); } && count % 4 == 3) {
+        grid.expectRays(1000);
+        expectOnceLikeBruteForce(grid, proxies, region);
+    }
+    return count;
+}
+
+template <class Scalar, class Region>
+std::size_t QueryCheck<Scalar, Region>::expectOnceLikeBruteForce(
     const Grid<Scalar>& grid, std::span<const Placed<Scalar>> proxies, const Region& region) {
     CollectKeys<Scalar> all;
     visitByBruteForce(proxies, region, all);
