@@ -23,18 +23,4 @@ inline void serialFor(std::size_t count, std::size_t /*grain*/, LoopBody body) {
     }
 }
 
-namespace detail {
-
-/// parallelFor(count, grain, body), for a body that may do all twice and throws nothing: where the loop cannot
-/// be run on several threads for want of memory, it is run on this one.
-inline void parallelForNoexcept(ParallelFor parallelFor, std::size_t count, std::size_t grain,
-                                LoopBody body) noexcept {
-    try {
-        parallelFor(count, grain, body);
-    } catch (...) {
-        serialFor(count, grain, body);
-    }
-}
-
-}  // namespace detail
 }  // namespace hashphase

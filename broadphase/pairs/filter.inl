@@ -12,6 +12,17 @@
 
 namespace hashphase::detail {
 
+// parallelFor(count, grain, body), for a body that may do all twice and throws nothing: where the loop cannot
+// be run on several threads for want of memory, it is run on this one.
+inline void parallelForNoexcept(ParallelFor parallelFor, std::size_t count, std::size_t grain,
+                                LoopBody body) noexcept {
+    try {
+        parallelFor(count, grain, body);
+    } catch (...) {
+        serialFor(count, grain, body);
+    }
+}
+
 // What the filter refused, and has not ended, is asked about again when one of the two has changed, and
 // put aside when both have come to rest.
 template <class Scalar>

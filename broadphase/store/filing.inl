@@ -37,16 +37,18 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
     frame.now.resize(count);
     frame.before.resize(hasPairs ? count : 0);
     ensureCapacity(frame.proxyIndices, proxies.nanCount);  // for relistMobile()
-    if (frame.someAreCalm) {
+    frame.idleCount = 0;
+    std::atomic<std::uint32_t> calmCount{0};
+    const bool observes = what == StageFor::update && observesNow();
+    if (observes && frame.someAreCalm.exchange(false)) {
         makeTremors();
     }
-    frame.idleCount = 0;
-    frame.someAreCalm = false;
     const bool someRefuse = proxies.groupKinds.someRefuse();  // else nobody asks for kinds
     frame.mobileKinds = 0;
     frame.changedKinds = 0;
     parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
         std::uint32_t idleCount = 0;
+        std::uint32_t ownCalmCount = 0;
         GroupKinds::Set mobileKinds = 0;
         GroupKinds::Set changedKinds = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -59,8 +61,10 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
             if (hasPairs) {
                 frame.before[i] = padded(proxies.boxAtUpdate(proxies.mobile[i]));
             }
-            const bool isCalm = what == StageFor::update && observe(proxies.mobile[i], record);
-            idleCount += isCalm || isIdle(record) ? 1 : 0;
+            const bool isIdle = this->isIdle(record);
+            const bool maySettle = observes && observe(proxies.mobile[i], record);
+            idleCount += isIdle ? 1 : 0;
+            ownCalmCount += maySettle && !isIdle ? 1 : 0;
             if (someRefuse) {
                 const GroupKinds::Set kind = GroupKinds::bit(record.kind);
                 mobileKinds |= kind;
@@ -68,35 +72,45 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
             }
         }
         frame.idleCount += idleCount;
+        calmCount += ownCalmCount;
         frame.mobileKinds |= mobileKinds;
         frame.changedKinds |= changedKinds;
     });
+    if (settling != nullptr) {
+        settling->calmCount = calmCount.load();
+    }
 }
 
 template <class Scalar>
 bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
     const std::size_t filedCount = tables.resting.size() - tables.restingErased;
     constexpr std::size_t kFiling = 2;  // costs as much as so many updates of mobile ones
-    tables.idleUpdates += frame.idleCount;
-    if (std::max<std::uint32_t>(frame.idleCount, tables.restingErased) <
-            worthRefiling(filedCount) &&
-        tables.idleUpdates < kFiling * (kFewIdle + filedCount + frame.idleCount)) {
+    const bool withSlack = isWorthSlack();
+    const std::uint32_t calmCount = withSlack ? settling->calmCount : 0;
+    const std::uint32_t joining = frame.idleCount + calmCount;
+    tables.idleUpdates += frame.idleCount + updatesObserved() * calmCount;
+    if (observesNow()) {
+        observedEach =
+            withSlack ? kOftenObserved : std::min<std::uint8_t>(observedEach + 1, kSeldomObserved);
+    }
+    if (std::max(joining, tables.restingErased) < worthRefiling(filedCount) &&
+        tables.idleUpdates < kFiling * (kFewIdle + filedCount + joining)) {
         return false;
     }
     // Those that stay at rest come first, then those that join.
-    ensureCapacity(frame.proxyIndices, filedCount + frame.idleCount);
-    ensureCapacity(frame.boxes, filedCount + frame.idleCount);
+    ensureCapacity(frame.proxyIndices, filedCount + joining);
+    ensureCapacity(frame.boxes, filedCount + joining);
     listResting();
     if (settling != nullptr) {
         settling->stayedCount = static_cast<std::uint32_t>(frame.boxes.size());
     }
-    for (std::size_t i = 0; frame.idleCount > 0 && i < proxies.mobile.size(); ++i) {
+    for (std::size_t i = 0; joining > 0 && i < proxies.mobile.size(); ++i) {
         Record& record = proxies.records[proxies.mobile[i]];
         if (record.residency != Residency::mobile) {
             continue;
         }
         const bool isIdle = this->isIdle(record);
-        if (isIdle || maySettle(proxies.mobile[i], record)) {
+        if (isIdle || (withSlack && maySettle(proxies.mobile[i], record))) {
             record.residency = Residency::resting;
             record.hasSlack = !isIdle;
             proxies.settledChanged += isIdle ? 0 : 1;
@@ -106,7 +120,7 @@ bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
         }
     }
     fileResting(parallelFor);
-    return frame.idleCount > 0;
+    return joining > 0;
 }
 
 // Those that are at rest, in the order of their table.

@@ -12,12 +12,17 @@
 
 namespace hashphase::detail {
 
+/// One update in 4 looks how mobile proxies move, and stands for the others; where it is in vain, one in 8, 16, and
+/// at last in 64. Binary logarithms.
+inline constexpr std::uint8_t kOftenObserved = 2;
+inline constexpr std::uint8_t kSeldomObserved = 6;
+
 /// How a proxy trembles. By it the slack is chosen with which it is filed when it settles.
 template <class Scalar>
 struct Tremor {
     Scalar reach = 0;              // about the longest move of a coordinate in the last updates [m]
     std::uint16_t calmCount = 0;   // updates in which it was calm, one after another
-    std::uint8_t slackFactor = 2;  // slack by reach
+    std::uint8_t slackFactor = 3;  // slack by reach
     std::uint8_t patience = 1;     // how many times as long it has to be calm before it settles
 };
 
@@ -26,7 +31,10 @@ template <class Scalar>
 struct Settling {
     std::vector<Tremor<Scalar>> tremors;  // by index, of those that were there at the last update
 
+    std::size_t slackCount = 0;  // of those that had slack when they were filed
+
     // Of the update under way.
+    std::uint32_t calmCount = 0;                // of those that may settle with slack
     std::vector<std::uint32_t> changedEntries;  // of the resting table, unless they are many
     bool areManyChanged = false;
     std::uint32_t stayedCount = 0;         // Table::order() of what rested before, below this

@@ -9,6 +9,7 @@
 #include <broadphase/core/prefetch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace hashphase::detail {
@@ -17,7 +18,7 @@ namespace {
 // Who stays within its slack for so many updates has paid for being settled; for so many more slack would not pay.
 constexpr std::uint32_t kWorthSettling = 16;
 constexpr std::uint32_t kWorthMoreSlack = 64;
-constexpr std::uint8_t kMostSlackFactor = 32;
+constexpr std::uint8_t kMostSlackFactor = 48;
 constexpr std::uint8_t kMostPatience = 16;
 
 // Of all coordinates.
@@ -39,6 +40,11 @@ PaddedBox<Scalar> grownBy(PaddedBox<Scalar> box, Scalar by) {
 }  // namespace
 
 template <class Scalar>
+bool Store<Scalar>::observesNow() const noexcept {
+    return maySettleWithSlack && config.slack != 0 && proxies.updateNumber % updatesObserved() == 0;
+}
+
+template <class Scalar>
 void Store<Scalar>::makeTremors() {
     if (settling == nullptr) {
         settling = std::make_unique<Settling<Scalar>>();
@@ -52,31 +58,51 @@ bool Store<Scalar>::hasTremor(std::uint32_t proxyIndex) const noexcept {
     return settling != nullptr && proxyIndex < settling->tremors.size();
 }
 
-// A proxy is calm while each of its moves is less than a quarter of the most slack that it may have.
+// A proxy is calm while each coordinate moves by less than an eighth of the most slack that it may have. Without
+// a branch, which could not be foreseen.
 template <class Scalar>
-bool Store<Scalar>::observe(std::uint32_t proxyIndex, Record& record) noexcept {
-    const bool isChanged = record.changedAt == proxies.updateNumber;
-    const Scalar moved = isChanged ? longestMove(record.box, record.before) : Scalar(0);
-    const bool isCalm =
-        record.residency == Residency::mobile && !record.isNan && 4 * moved < mostSlack(record.box);
-    if (!isCalm) {
-        if (record.isCalm) {
-            record.isCalm = false;
-        }
-        return false;
+bool Store<Scalar>::isCalm(const Record& record) const noexcept {
+    const Scalar most = mostSlack(record.box) / 8;
+    const Scalar* const now = record.box.min().data();
+    const Scalar* const before = record.before.min().data();
+    const Scalar* const nowHigh = record.box.max().data();
+    const Scalar* const beforeHigh = record.before.max().data();
+    bool isNear = record.residency == Residency::mobile;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        isNear &= std::abs(now[axis] - before[axis]) < most;
+        isNear &= std::abs(nowHigh[axis] - beforeHigh[axis]) < most;
     }
+    return record.changedAt == proxies.updateNumber ? isNear : record.isCalm;
+}
+
+template <class Scalar>
+bool Store<Scalar>::observeCalm(std::uint32_t proxyIndex, Record& record) noexcept {
     frame.someAreCalm.store(true, std::memory_order_relaxed);
     if (!hasTremor(proxyIndex)) {
         return false;  // until the next update
     }
     constexpr auto kFades = Scalar(0.875);
+    const bool isChanged = record.changedAt == proxies.updateNumber;
+    const Scalar moved = isChanged ? longestMove(record.box, record.before) : Scalar(0);
     Tremor<Scalar>& tremor = settling->tremors[proxyIndex];
     tremor.reach = std::max(moved, record.isCalm ? tremor.reach * kFades : Scalar(0));
-    tremor.calmCount = record.isCalm
-                           ? static_cast<std::uint16_t>(std::min(tremor.calmCount + 1, 0xffff))
-                           : std::uint16_t{0};
+    tremor.calmCount =
+        record.isCalm
+            ? static_cast<std::uint16_t>(std::min(tremor.calmCount + updatesObserved(), 0xffffU))
+            : std::uint16_t{0};
     record.isCalm = true;
     return maySettle(proxyIndex, record);
+}
+
+// What travels is looked for among what is settled, which takes longer than to file and join all together: it
+// pays where few travel.
+template <class Scalar>
+bool Store<Scalar>::isWorthSlack() const noexcept {
+    if (settling == nullptr) {
+        return false;
+    }
+    const std::size_t travelCount = proxies.mobile.size() - settling->calmCount;
+    return config.slack || settling->calmCount + settling->slackCount >= 7 * travelCount;
 }
 
 template <class Scalar>
@@ -94,11 +120,9 @@ Scalar Store<Scalar>::mostSlack(const Box& box) const noexcept {
     if (!maySettleWithSlack) {
         return 0;
     }
-    if (config.slack) {
-        return static_cast<Scalar>(*config.slack);
-    }
     constexpr Scalar kShareOfMeanEdge = 4;
-    return box.sizes().sum() / (3 * kShareOfMeanEdge);
+    return config.slack ? static_cast<Scalar>(*config.slack)
+                        : box.sizes().sum() * (1 / (3 * kShareOfMeanEdge));
 }
 
 template <class Scalar>
@@ -113,9 +137,11 @@ template <class Scalar>
 void Store<Scalar>::growBoxes() {
     ensureCapacity(settling->grown, frame.boxes.size());
     settling->grown = frame.boxes;
+    settling->slackCount = 0;
     for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
         const std::uint32_t proxyIndex = frame.proxyIndices[i];
         if (proxies.records[proxyIndex].hasSlack) {
+            ++settling->slackCount;
             settling->grown[i] = grownBy(frame.boxes[i], slackOf(proxyIndex));
         }
     }

@@ -131,6 +131,7 @@ void Store<Scalar>::clear() {
     mustRebuildPairs = false;
     cost = {};
     frame.someAreCalm = false;
+    observedEach = kOftenObserved;
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
     settling.reset();
     moveScratch.reset();

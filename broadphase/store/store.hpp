@@ -10,9 +10,9 @@
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
-#include <broadphase/store/move_scratch.hpp>
 #include <broadphase/query_cost.hpp>
 #include <broadphase/regions.hpp>
+#include <broadphase/store/move_scratch.hpp>
 #include <broadphase/store/population.hpp>
 #include <broadphase/store/settling.hpp>
 #include <broadphase/store/tables.hpp>
@@ -73,6 +73,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     PeakWatch peaks;
     bool hasPairs = false;
     bool maySettleWithSlack = true;
+    std::uint8_t observedEach = kOftenObserved;  // update, as a binary logarithm
     bool mustRebuildPairs = false;  // by wakeAll(): what pairs watch is to be found anew
 
     explicit Store(const GridConfig& itsConfig);
@@ -151,8 +152,21 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// Copies the mobile boxes side by side.
     enum class StageFor : std::uint8_t { update, repair, queries };
     void stage(ParallelFor parallelFor, StageFor what);
+    [[nodiscard]] bool observesNow() const noexcept;
+    [[nodiscard]] std::uint32_t updatesObserved() const noexcept { return 1U << observedEach; }
     /// Watches how a mobile proxy moves. Returns whether it may settle with slack.
-    [[nodiscard]] bool observe(std::uint32_t proxyIndex, Record& record) noexcept;
+    [[nodiscard]] bool observe(std::uint32_t proxyIndex, Record& record) noexcept {
+        if (isCalm(record)) {
+            return observeCalm(proxyIndex, record);
+        }
+        if (record.isCalm) {
+            record.isCalm = false;
+        }
+        return false;
+    }
+    [[nodiscard]] bool isCalm(const Record& record) const noexcept;
+    [[nodiscard]] bool observeCalm(std::uint32_t proxyIndex, Record& record) noexcept;
+    [[nodiscard]] bool isWorthSlack() const noexcept;
     void makeTremors();
     [[nodiscard]] bool hasTremor(std::uint32_t proxyIndex) const noexcept;
     void growBoxes();

@@ -157,7 +157,11 @@ QueryCost Sight<Scalar>::look(const Grid<Scalar>& grid, std::span<const Viewer<S
     viewerCount_ = 0;  // nobody has seen anybody, should memory run out
     found_.resize(std::max(found_.size(), viewers.size()));
     // A query for each viewer, and one for each that it may see.
+    constexpr std::size_t kAny = 1 << 20;  // each looks along many rays
     grid.expectQueries(viewers.empty() ? 0 : std::numeric_limits<std::size_t>::max());
+    if (!viewers.empty()) {
+        grid.expectRays(kAny);
+    }
     parallelFor(viewers.size(), grain, [&](std::size_t begin, std::size_t end) {
         const detail::QueryScope scope(this);
         for (std::size_t i = begin; i < end; ++i) {

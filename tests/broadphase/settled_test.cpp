@@ -151,12 +151,8 @@ TYPED_TEST(Settled, MeetWhatTravelsWhatStandsAndWhatComes) {
 TYPED_TEST(Settled, AreFewAmongManyThatStand) {
     TremblingWorld<TypeParam> world;
     world.addMany(1300, boxesIn<TypeParam>(-20, 20, 0.5, 1), 1);
-    world.update();
-    for (int update = 0; update < 60; ++update) {
-        world.tremble();
-        world.update();
-    }
     world.updateAndCheck();
+    world.play(60);
     EXPECT_GT(world.cost().resting, 1300 + world.kCount / 2);
     world.tremble(world.kCount - 5);
     world.updateAndCheck();

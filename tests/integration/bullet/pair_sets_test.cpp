@@ -25,6 +25,7 @@ std::vector<SpatialHashConfig> configurations() {
     all[1].grid.levelRatio = 16;
     all[2].grid.updatesBeforeRest = 1'000'000;
     all[3].grid.updatesBeforeRest = 1;
+    all[3].grid.slack = btScalar(0.3);
     all[3].eagerGroups = btBroadphaseProxy::AllFilter;
     all[4].eagerGroups = 0;
     return all;

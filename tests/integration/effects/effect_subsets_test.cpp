@@ -189,7 +189,10 @@ TEST(EffectSubsets, AllHaveSomethingToDo) {
         }
     }
     for (std::size_t i = 0; i < kSceneTableCount; ++i) {
-        EXPECT_GT(run.footprint[static_cast<SceneTable>(i)], 0U) << sceneTables()[i].name;
+        const std::string_view name = sceneTables()[i].name;
+        if (name != "rayTrees") {  // a pick a frame walks through cells
+            EXPECT_GT(run.footprint[static_cast<SceneTable>(i)], 0U) << name;
+        }
     }
 }
 
