@@ -38,7 +38,8 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
     frame.before.resize(hasPairs ? count : 0);
     ensureCapacity(frame.proxyIndices, proxies.nanCount);  // for relistMobile()
     frame.idleCount = 0;
-    std::atomic<std::uint32_t> calmCount{0};
+    std::atomic<std::uint32_t> calmCount{0};  // of those that may settle with slack
+    std::atomic<std::uint32_t> allCalmCount{0};
     const bool observes = what == StageFor::update && observesNow();
     if (observes && frame.someAreCalm.exchange(false)) {
         makeTremors();
@@ -49,6 +50,7 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
     parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
         std::uint32_t idleCount = 0;
         std::uint32_t ownCalmCount = 0;
+        std::uint32_t ownAllCalmCount = 0;
         GroupKinds::Set mobileKinds = 0;
         GroupKinds::Set changedKinds = 0;
         for (std::size_t i = begin; i < end; ++i) {
@@ -65,6 +67,7 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
             const bool maySettle = observes && observe(proxies.mobile[i], record);
             idleCount += isIdle ? 1 : 0;
             ownCalmCount += maySettle && !isIdle ? 1 : 0;
+            ownAllCalmCount += observes && record.isCalm ? 1 : 0;
             if (someRefuse) {
                 const GroupKinds::Set kind = GroupKinds::bit(record.kind);
                 mobileKinds |= kind;
@@ -73,9 +76,14 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
         }
         frame.idleCount += idleCount;
         calmCount += ownCalmCount;
+        allCalmCount += ownAllCalmCount;
         frame.mobileKinds |= mobileKinds;
         frame.changedKinds |= changedKinds;
     });
+    if (observes) {
+        const std::size_t allCalm = allCalmCount.load();
+        frame.someAreCalm = config.slack ? allCalm > 0 : 8 * allCalm > 7 * count;
+    }
     if (settling != nullptr) {
         settling->calmCount = calmCount.load();
     }

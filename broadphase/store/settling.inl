@@ -58,39 +58,40 @@ bool Store<Scalar>::hasTremor(std::uint32_t proxyIndex) const noexcept {
     return settling != nullptr && proxyIndex < settling->tremors.size();
 }
 
-// A proxy is calm while each coordinate moves by less than an eighth of the most slack that it may have. Without
-// a branch, which could not be foreseen.
+// A proxy is calm while each coordinate moves by less than an eighth of the most slack that it may have, or than
+// half of a fixed one. Without a branch, which could not be foreseen.
 template <class Scalar>
 bool Store<Scalar>::isCalm(const Record& record) const noexcept {
-    const Scalar most = mostSlack(record.box) / 8;
+    const Scalar most = mostSlack(record.box) / (config.slack ? 2 : 8);
     const Scalar* const now = record.box.min().data();
     const Scalar* const before = record.before.min().data();
     const Scalar* const nowHigh = record.box.max().data();
     const Scalar* const beforeHigh = record.before.max().data();
-    bool isNear = record.residency == Residency::mobile;
+    bool isNear = true;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         isNear &= std::abs(now[axis] - before[axis]) < most;
         isNear &= std::abs(nowHigh[axis] - beforeHigh[axis]) < most;
     }
-    return record.changedAt == proxies.updateNumber ? isNear : record.isCalm;
+    const bool wouldBe = record.changedAt == proxies.updateNumber ? isNear : bool{record.isCalm};
+    return wouldBe && record.residency == Residency::mobile && !record.isNan;
 }
 
 template <class Scalar>
 bool Store<Scalar>::observeCalm(std::uint32_t proxyIndex, Record& record) noexcept {
-    frame.someAreCalm.store(true, std::memory_order_relaxed);
+    const bool wasCalm = record.isCalm;
+    record.isCalm = true;
     if (!hasTremor(proxyIndex)) {
-        return false;  // until the next update
+        return false;  // until most are calm
     }
     constexpr auto kFades = Scalar(0.875);
     const bool isChanged = record.changedAt == proxies.updateNumber;
     const Scalar moved = isChanged ? longestMove(record.box, record.before) : Scalar(0);
     Tremor<Scalar>& tremor = settling->tremors[proxyIndex];
-    tremor.reach = std::max(moved, record.isCalm ? tremor.reach * kFades : Scalar(0));
+    tremor.reach = std::max(moved, wasCalm ? tremor.reach * kFades : Scalar(0));
     tremor.calmCount =
-        record.isCalm
+        wasCalm
             ? static_cast<std::uint16_t>(std::min(tremor.calmCount + updatesObserved(), 0xffffU))
             : std::uint16_t{0};
-    record.isCalm = true;
     return maySettle(proxyIndex, record);
 }
 
@@ -98,7 +99,7 @@ bool Store<Scalar>::observeCalm(std::uint32_t proxyIndex, Record& record) noexce
 // pays where few travel.
 template <class Scalar>
 bool Store<Scalar>::isWorthSlack() const noexcept {
-    if (settling == nullptr) {
+    if (settling == nullptr || settling->calmCount == 0) {
         return false;
     }
     const std::size_t travelCount = proxies.mobile.size() - settling->calmCount;
@@ -107,7 +108,7 @@ bool Store<Scalar>::isWorthSlack() const noexcept {
 
 template <class Scalar>
 bool Store<Scalar>::maySettle(std::uint32_t proxyIndex, const Record& record) const noexcept {
-    if (!record.isCalm || !hasTremor(proxyIndex)) {
+    if (!record.isCalm || record.isNan || !hasTremor(proxyIndex)) {
         return false;
     }
     const Tremor<Scalar>& tremor = settling->tremors[proxyIndex];
