@@ -193,7 +193,7 @@ void ContactSearch<Scalar>::cut(std::uint32_t motion, const Aabb<double>& world,
     }
 }
 
-// The first ray after an update makes a tree of all mobile boxes. For a few it is not worth it.
+// Many rays after an update make a tree of all mobile boxes. For a few ways that is not worth it.
 template <class Scalar>
 void ContactSearch<Scalar>::cutFewRays() {
     constexpr double kBoxesPerSegment = 8;  // of a tree made in the time of a segment
