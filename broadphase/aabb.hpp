@@ -16,8 +16,11 @@
 
 #include <Eigen/Geometry>
 
+#include <bit>
+#include <cmath>
+#include <concepts>
 #include <cstddef>
-#include <cstring>
+#include <cstdint>
 #include <type_traits>
 
 #include <broadphase/core/hide_macros.hpp>
@@ -69,12 +72,24 @@ template <class Scalar>
             (bMin[1] <= aMax[1]) & (aMin[2] <= bMax[2]) & (bMin[2] <= aMax[2])) != 0;
 }
 
-/// True when the boxes are equal to the bit: -0 differs from 0, and a NaN equals itself.
+/// True when the numbers are equal to the bit: -0 differs from 0, and a NaN equals itself.
+template <std::floating_point Scalar>
+[[nodiscard]] inline bool isSameBits(Scalar a, Scalar b) noexcept {
+    using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
+    return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
+
+/// True when all twelve numbers are. Reads them one by one, as they mostly have just been written: of wider
+/// reads the processor would wait until they are in memory.
 template <class Scalar>
 [[nodiscard]] inline bool isSameBits(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
-    constexpr std::size_t kBytes = 3 * sizeof(Scalar);
-    return std::memcmp(a.min().data(), b.min().data(), kBytes) == 0 &&
-           std::memcmp(a.max().data(), b.max().data(), kBytes) == 0;
+    const Scalar* aMin = a.min().data();
+    const Scalar* aMax = a.max().data();
+    const Scalar* bMin = b.min().data();
+    const Scalar* bMax = b.max().data();
+    return isSameBits(aMin[0], bMin[0]) && isSameBits(aMin[1], bMin[1]) &&
+           isSameBits(aMin[2], bMin[2]) && isSameBits(aMax[0], bMax[0]) &&
+           isSameBits(aMax[1], bMax[1]) && isSameBits(aMax[2], bMax[2]);
 }
 
 /// True when any of the six coordinates is NaN.
@@ -82,8 +97,8 @@ template <class Scalar>
 [[nodiscard]] inline bool hasNan(const Aabb<Scalar>& box) noexcept {
     const Scalar* low = box.min().data();
     const Scalar* high = box.max().data();
-    return ((low[0] != low[0]) | (low[1] != low[1]) | (low[2] != low[2]) | (high[0] != high[0]) |
-            (high[1] != high[1]) | (high[2] != high[2])) != 0;
+    return std::isunordered(low[0], high[0]) || std::isunordered(low[1], high[1]) ||
+           std::isunordered(low[2], high[2]);
 }
 
 }  // namespace hashphase

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/grid.hpp>
 
-#include <broadphase/pairs/step.hpp>
 #include <broadphase/move_batch.hpp>
+#include <broadphase/pairs/step.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -30,15 +30,6 @@ template <class Scalar>
 void Grid<Scalar>::reserve(std::size_t count) {
     HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);
     store_.reserve(count);
-}
-
-template <class Scalar>
-void Grid<Scalar>::move(ProxyId id, const Box& box) {
-    HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed can be moved.");
-    HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);
-    if (contains(id)) {
-        store_.move(id.index, box);
-    }
 }
 
 template <class Scalar>
@@ -110,11 +101,6 @@ std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
     HASHPHASE_ASSERT(shift.allFinite(), "The origin is shifted by what is finite.");
     HASHPHASE_ASSERT(!isWithinQuery(), "The origin is not shifted within a query.");
     return shift.allFinite() && !shift.isZero(0) ? store_.shiftOrigin(shift) : 0;
-}
-
-template <class Scalar>
-bool Grid<Scalar>::contains(ProxyId id) const noexcept {
-    return store_.proxies.contains(id);
 }
 
 template <class Scalar>

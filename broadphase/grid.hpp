@@ -96,7 +96,14 @@ public:
 
     /// Sets the proxy's box. A box that is equal to the present one, bit by bit, costs a comparison and marks
     /// nothing. Cost: O(1) amortised.
-    void move(ProxyId id, const Box& box);
+    [[gnu::always_inline]] void move(ProxyId id, const Box& box) {
+        HASHPHASE_ASSERT(contains(id),
+                         "Only a proxy of this grid that was not removed can be moved.");
+        HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);
+        if (contains(id)) {
+            store_.move(id.index, box);
+        }
+    }
 
     /// Sets the box of each proxy, in their order; both spans have the same length (asserted). All is as
     /// after as many single calls, on any number of threads, where a proxy is named twice, too. Where memory
@@ -139,7 +146,7 @@ public:
     std::size_t shiftOrigin(const Point& shift);
 
     /// Whether the id names a proxy of this grid that was not removed.
-    [[nodiscard]] bool contains(ProxyId id) const noexcept;
+    [[nodiscard]] bool contains(ProxyId id) const noexcept { return store_.proxies.contains(id); }
 
     /// The box last set, exactly.
     [[nodiscard]] const Box& box(ProxyId id) const;

@@ -15,6 +15,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include <broadphase/core/hide_macros.hpp>
@@ -127,36 +128,29 @@ private:
 
     void moveNow(const Move<Scalar>& move, std::uint32_t offset, Part& part,
                  std::uint32_t* entries) {
-        Population<Scalar>& proxies = store_.proxies;
-        Record<Scalar>& record = proxies.records[move.proxyIndex];
+        Record<Scalar>& record = store_.proxies.records[move.proxyIndex];
         if (isSameBits(record.box, move.box)) {
             return;
         }
-        if (!(record.residency == Residency::mobile || record.hasSlack) || record.isNan ||
-            hasNan(move.box)) {
+        if (!store_.movesInPlace(record, move.box)) {
             part.areAllListed = false;
             entries[part.entryCount++] = kInTurn | offset;
             return;
         }
-        part.changed += store_.keepBefore(record) ? 1 : 0;
-        part.settledChanged += record.hasSlack ? 1 : 0;
-        if (!proxies.isWaiting(record)) {
-            record.listedIn = proxies.listNumber;
-            entries[part.entryCount++] = move.proxyIndex;
-        }
-        store_.setBox(record, move.box);
+        store_.moveInPlace(record, move.box, part.changed, part.settledChanged,
+                           [&]() noexcept { entries[part.entryCount++] = move.proxyIndex; });
     }
 
     // In the order of the batch.
     template <class MoveAt>
     void join(std::size_t number, const MoveAt& moveAt) {
-        std::vector<std::uint32_t>& waiting = store_.proxies.waiting;
+        RoomyList<std::uint32_t>& waiting = store_.proxies.waiting;
         const Part& part = scratch_.parts[number];
         const std::uint32_t* const entries = scratch_.entries.data() + number * MoveScratch::kGrain;
         store_.cost.changed += part.changed;
         store_.proxies.settledChanged += part.settledChanged;
         if (part.areAllListed) {
-            waiting.insert(waiting.end(), entries, entries + part.entryCount);
+            std::copy(entries, entries + part.entryCount, std::back_inserter(waiting));
             return;
         }
         for (std::uint32_t i = 0; i < part.entryCount; ++i) {

@@ -9,7 +9,9 @@
 #include <broadphase/core/ensure_capacity.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <new>
+#include <utility>
 
 namespace hashphase::detail {
 namespace {
@@ -23,8 +25,8 @@ void shrink(Array& array, std::size_t count) noexcept {
     try {
         Array fresh;
         fresh.reserve(std::max(count, array.size()));
-        fresh.insert(fresh.end(), array.begin(), array.end());
-        array.swap(fresh);
+        std::copy(array.begin(), array.end(), std::back_inserter(fresh));
+        std::swap(array, fresh);
     } catch (const std::bad_alloc&) {
     }
 }
@@ -96,7 +98,7 @@ void Store<Scalar>::releaseMemory() noexcept {
     shrink(proxies.groups, proxies.groups.empty() ? 0 : 2 * proxies.records.capacity());
     shrink(proxies.mobile, std::max(listedCount(), proxies.reservedCount));
     shrink(proxies.woken, proxies.mobile.capacity());
-    shrink(proxies.waiting, proxies.mobile.capacity());
+    shrink(proxies.waiting, proxies.mobile.capacity() + proxies.removedImmediate.count);
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
     settling.reset();
     moveScratch.reset();

@@ -118,9 +118,9 @@ void Population<Scalar>::clear() noexcept {
     ++number;
     nanReported = areRegrouped = false;
     updateNumber = 1;
-    for (std::vector<std::uint32_t>* list : {&waiting, &mobile, &woken}) {
-        list->clear();
-    }
+    waiting.clear();
+    mobile.clear();
+    woken.clear();
     mobileAtUpdate = 0;
     listNumber = 1;
     settledChanged = 0;

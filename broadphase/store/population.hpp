@@ -7,6 +7,7 @@
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/group_kinds.hpp>
+#include <broadphase/core/roomy_list.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/proxy_groups.hpp>
@@ -93,7 +94,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     std::vector<std::uint32_t> mobile;
     std::size_t mobileAtUpdate = 0;       // how many there were at the last update
     std::vector<std::uint32_t> woken;     // indices that have left rest since the last update
-    std::vector<std::uint32_t> waiting;   // what changed since the mobile table was built
+    RoomyList<std::uint32_t> waiting;     // what changed since the mobile table was built
     std::vector<std::uint32_t> sweeping;  // when the last update began; in `mobile`, too
 
     // When a shift of the origin has rounded boxes since the last update: the boxes of that update in the

@@ -155,7 +155,7 @@ void Store<Scalar>::followSettled() {
     if (settling == nullptr) {
         return;
     }
-    const std::vector<std::uint32_t>& waiting = proxies.waiting;
+    const RoomyList<std::uint32_t>& waiting = proxies.waiting;
     Table<Scalar>& table = tables.resting;
     settling->areManyChanged = proxies.settledChanged > table.size() / kMany;
     settling->changedEntries.clear();

@@ -77,14 +77,16 @@ std::uint32_t Store<Scalar>::add(const Box& box, bool restsAtOnce, const ProxyGr
 // One without a proxy, and room to list it.
 template <class Scalar>
 std::uint32_t Store<Scalar>::takeIndex() {
+    // Those that came and went, and cannot come again before the update, are listed as changed alone.
+    const std::size_t room = listedCount() + proxies.removedImmediate.count + 1;
     std::uint32_t proxyIndex = proxies.free.first;
     if (proxyIndex == kNoProxyIndex) {
         proxies.reserveRecords(proxies.records.size() + 1);
-        proxies.reserveLists(listedCount() + 1);
+        proxies.reserveLists(room);
         proxyIndex = static_cast<std::uint32_t>(proxies.records.size());
         proxies.records.emplace_back().generation = proxies.firstGeneration;
     } else {
-        proxies.reserveLists(listedCount() + 1);
+        proxies.reserveLists(room);
         proxies.free.first = proxies.records[proxyIndex].listedAt;
         --proxies.free.count;
     }
@@ -173,19 +175,19 @@ void Store<Scalar>::listChange(std::uint32_t proxyIndex) noexcept {
     }
 }
 
+// What has slack wakes only where it leaves it, which the update will see.
 template <class Scalar>
-void Store<Scalar>::markMoved(std::uint32_t proxyIndex) noexcept {
-    beforeChange();
+void Store<Scalar>::moveAny(std::uint32_t proxyIndex, const Box& box) {
+    beforeChange();  // by which it may have lost its slack
     Record& record = proxies.records[proxyIndex];
     countChange(record);
-    if (record.residency == Residency::resting) {
-        if (record.hasSlack) {
-            ++proxies.settledChanged;
-        } else {
-            wake(proxyIndex);
-        }
+    if (record.hasSlack) {
+        ++proxies.settledChanged;
+    } else if (record.residency == Residency::resting) {
+        wake(proxyIndex);
     }
     listChange(proxyIndex);
+    setBox(record, box);
 }
 
 template <class Scalar>

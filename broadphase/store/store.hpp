@@ -83,13 +83,39 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     [[nodiscard]] std::uint32_t add(const Box& box, bool restsAtOnce, const ProxyGroups& groups);
     [[nodiscard]] std::uint32_t takeIndex();
     void reserve(std::size_t count);
-    // Here, because mostly it is but a comparison.
-    void move(std::uint32_t proxyIndex, const Box& box) {
+    // Inline, as calls would cost what they do.
+    [[gnu::always_inline]] void move(std::uint32_t proxyIndex, const Box& box) {
         Record& record = proxies.records[proxyIndex];
-        if (!isSameBits(record.box, box)) {
-            markMoved(proxyIndex);
-            setBox(record, box);
+        if (isSameBits(record.box, box)) {
+            return;
         }
+        if (!movesInPlace(record, box) || tables.isFresh.load(std::memory_order_relaxed)) {
+            moveAny(proxyIndex, box);
+            return;
+        }
+        moveInPlace(record, box, cost.changed, proxies.settledChanged,
+                    [&]() noexcept { proxies.waiting.push_back(proxyIndex); });
+    }
+    void moveAny(std::uint32_t proxyIndex, const Box& box);
+    /// Whether a move writes the record, two counts and the list of changes, and nothing else.
+    [[nodiscard, gnu::always_inline]] static bool movesInPlace(const Record& record,
+                                                               const Box& box) noexcept {
+        return (record.residency == Residency::mobile || record.hasSlack) && !record.isNan &&
+               !hasNan(box);
+    }
+    /// Such a move. Counts, and calls list() where the proxy is to be listed.
+    template <class ListChange>
+    [[gnu::always_inline]] void moveInPlace(Record& record, const Box& box, std::uint32_t& changed,
+                                            std::uint32_t& settledChanged,
+                                            const ListChange& list) noexcept {
+        changed += keepBefore(record) ? 1 : 0;
+        settledChanged += record.hasSlack ? 1 : 0;
+        if (!proxies.isWaiting(record)) {
+            record.listedIn = proxies.listNumber;
+            list();
+        }
+        record.box = box;
+        record.restsAtOnce = false;
     }
     [[nodiscard]] MoveScratch& scratchOfMoves() {
         if (moveScratch == nullptr) {
@@ -103,14 +129,12 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
 
     /// To be called before every change of a proxy's box. What rests wakes.
     void markChanged(std::uint32_t proxyIndex) noexcept;
-    /// The same before a move: what has slack wakes only where it leaves it, which the update will see.
-    void markMoved(std::uint32_t proxyIndex) noexcept;
     /// The same where the box is not changed.
     void listChange(std::uint32_t proxyIndex) noexcept;
     void noteLeft(std::uint32_t proxyIndex) noexcept;
     void countChange(Record& record) noexcept { cost.changed += keepBefore(record) ? 1 : 0; }
     /// Where the record has not changed since the last update: keeps what it was then, and returns true.
-    bool keepBefore(Record& record) noexcept {
+    [[gnu::always_inline]] bool keepBefore(Record& record) noexcept {
         if (record.changedAt == proxies.updateNumber) {
             return false;
         }

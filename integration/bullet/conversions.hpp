@@ -12,8 +12,6 @@
 
 #include <LinearMath/btVector3.h>
 
-#include <cstring>
-
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// The three coordinates; Bullet's fourth number is dropped.
@@ -26,9 +24,11 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
     return {v.x(), v.y(), v.z()};
 }
 
+using hashphase::isSameBits;
+
 /// True when the three coordinates are equal to the bit: -0 differs from 0, and a NaN equals itself.
 [[nodiscard]] inline bool isSameBits(const btVector3& a, const btVector3& b) {
-    return std::memcmp(a.m_floats, b.m_floats, 3 * sizeof(btScalar)) == 0;
+    return isSameBits(a.x(), b.x()) && isSameBits(a.y(), b.y()) && isSameBits(a.z(), b.z());
 }
 
 /// The box between two corners, taken as they are: where min > max, the box is inverted.

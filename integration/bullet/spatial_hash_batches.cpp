@@ -115,16 +115,7 @@ private:
         if (!owner_.areGroupsKnown(proxy)) {
             return false;
         }
-        return isSame(i) ||
-               (!mayBeEager(proxy) &&
-                (owner_.ghosts_.empty() ||
-                 overlaps(toAabb(proxy.m_aabbMin, proxy.m_aabbMax), toAabb(mins_[i], maxs_[i]))));
-    }
-    [[nodiscard]] bool mayBeEager(const Proxy& proxy) const {
-        const bool mayBeGhost =
-            proxy.client == Client::ghost || canClientBeLookedAt(proxy, dispatcher_);
-        return (proxy.m_collisionFilterGroup & owner_.config_.eagerGroups) != 0 ||
-               (mayBeGhost && owner_.mayHaveGhosts());
+        return isSame(i) || owner_.movesAlone(proxy, toAabb(mins_[i], maxs_[i]), dispatcher_);
     }
     [[nodiscard]] std::size_t firstAlone(std::size_t from) const {
         const std::span<const char> alone(scratch().isAlone.data(), proxies_.size());
@@ -136,8 +127,7 @@ private:
     // Returns whether all that was seen of the others still holds: callbacks may change anything.
     [[nodiscard]] bool setAlone(std::size_t i) {
         const auto state = [this] {
-            return std::tuple(owner_.cacheChangeCount_, owner_.ghosts_.size(),
-                              owner_.groupsDecide_);
+            return std::tuple(owner_.cacheChangeCount_, owner_.ghostCount(), owner_.groupsDecide_);
         };
         const auto before = state();
         owner_.setAabb(proxies_[i], mins_[i], maxs_[i], dispatcher_);

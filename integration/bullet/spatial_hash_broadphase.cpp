@@ -142,8 +142,8 @@ void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
     }
     grid_.remove(proxy->id);
     noteSeen(*proxy, false);
-    if (proxy->client == Client::ghost) {
-        forgetGhost(*proxy);
+    if (ghosts_ != nullptr) {
+        ghosts_->erase(proxy->id.index);
     }
     uniqueIds_[proxy->id.index] = 0;
     proxy->id = {};
@@ -158,29 +158,47 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     if (own->id.isNull()) {  // destroyed before
         return;
     }
-    const bool isSame = isSameBits(own->m_aabbMin, aabbMin) && isSameBits(own->m_aabbMax, aabbMax);
-    const bool jumps = !isSame && !ghosts_.empty() &&
-                       !overlaps(toAabb(own->m_aabbMin, own->m_aabbMax), toAabb(aabbMin, aabbMax));
-    // A body that flies back may have the same box as when it came.
-    if (!isSame || sweeps_ != nullptr) {
+    const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
+    if (sweeps_ != nullptr || !areGroupsKnown(*own) || !movesAlone(*own, box, dispatcher)) {
+        setAnyAabb(*own, aabbMin, aabbMax, dispatcher);
+        return;
+    }
+    if (!isSameBits(toAabb(own->m_aabbMin, own->m_aabbMax), box)) {
         own->m_aabbMin = aabbMin;
         own->m_aabbMax = aabbMax;
-        move(*own);
+        grid_.move(own->id, box);
         changedKinds_ |= detail::GroupKinds::bit(own->kind);
     }
-    const bool isRegrouped = !areGroupsKnown(*own) && noteGroups(*own);
     if (!seen_.empty()) {
         noteSeen(*own, true);
     }
-    if ((!isSame || isRegrouped) && isEager(*own, dispatcher)) {
-        findPairsNow(*own, dispatcher);
+}
+
+void SpatialHashBroadphase::setAnyAabb(Proxy& proxy, const btVector3& aabbMin,
+                                       const btVector3& aabbMax, btDispatcher* dispatcher) {
+    const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
+    const Aabb<btScalar> before = toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
+    const bool isSame = isSameBits(before, box);
+    const bool jumps = !isSame && ghostCount() > 0 && !overlaps(before, box);
+    // A body that flies back may have the same box as when it came.
+    if (!isSame || sweeps_ != nullptr) {
+        proxy.m_aabbMin = aabbMin;
+        proxy.m_aabbMax = aabbMax;
+        move(proxy, box);
+        changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
+    }
+    const bool isRegrouped = !areGroupsKnown(proxy) && noteGroups(proxy);
+    if (!seen_.empty()) {
+        noteSeen(proxy, true);
+    }
+    if ((!isSame || isRegrouped) && isEager(proxy, dispatcher)) {
+        findPairsNow(proxy, dispatcher);
     } else if (jumps) {
-        findGhostPairsNow(*own, dispatcher);
+        findGhostPairsNow(proxy, dispatcher);
     }
 }
 
-void SpatialHashBroadphase::move(const Proxy& proxy) {
-    const Aabb<btScalar> box = toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
+void SpatialHashBroadphase::move(const Proxy& proxy, const Aabb<btScalar>& box) {
     if (sweeps_ == nullptr) {
         grid_.move(proxy.id, box);
     } else {

@@ -33,11 +33,13 @@
 // Misuse    Proxies that are not alive, proxies of other broadphases, spans of different lengths in a
 //           batch, and rays without a callback are asserted.
 
+#include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/group_kinds.hpp>
 #include <broadphase/core/stable_array.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>
+#include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/cache_watch.hpp>
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/pair_cache.hpp>
@@ -329,8 +331,7 @@ private:
     struct Proxy : btBroadphaseProxy {
         ProxyId id;
         Client client = Client::unknown;
-        std::uint8_t kind = 0;      // of its groups, as the grid knows them, in groupKinds_
-        std::uint32_t ghostAt = 0;  // a ghost's place in ghosts_
+        std::uint8_t kind = 0;  // of its groups, as the grid knows them, in groupKinds_
     };
     struct PairLists;
     class Applying;
@@ -387,18 +388,40 @@ private:
         return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
                (proxy.client != Client::other && mayHaveGhosts() && isGhost(proxy, dispatcher));
     }
+    [[nodiscard]] bool mayBeEager(const Proxy& proxy, const btDispatcher* dispatcher) const {
+        return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
+               (proxy.client != Client::other && mayHaveGhosts() &&
+                (proxy.client == Client::ghost || canClientBeLookedAt(proxy, dispatcher)));
+    }
+    // Bullet, too, takes a client for a btCollisionObject when it tells ghosts, or a dispatcher, of a pair:
+    // what can have none may be anything. What a client is never changes.
     [[nodiscard]] static bool canClientBeLookedAt(const Proxy& proxy,
-                                                  const btDispatcher* dispatcher) noexcept;
+                                                  const btDispatcher* dispatcher) noexcept {
+        const bool mayPair = proxy.m_collisionFilterGroup != 0 && proxy.m_collisionFilterMask != 0;
+        return proxy.client == Client::unknown && dispatcher != nullptr && mayPair &&
+               proxy.m_clientObject != nullptr;
+    }
     [[nodiscard]] bool mayHaveGhosts() const noexcept {
         return config_.eagerGhosts &&
                (watch_.cache == nullptr || watch_.cache->getInternalGhostPairCallback() != nullptr);
     }
     [[nodiscard]] bool isGhost(Proxy& proxy, const btDispatcher* dispatcher);
     [[nodiscard]] std::vector<ProxyId> ghostsAt(const Proxy& proxy) const;
-    void forgetGhost(Proxy& proxy) noexcept;
     void findPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
     void findGhostPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
-    void move(const Proxy& proxy);
+    // setAabb() where it may do more than move the box.
+    void setAnyAabb(Proxy& proxy, const btVector3& aabbMin, const btVector3& aabbMax,
+                    btDispatcher* dispatcher);
+    // Whether a move to the box finds no pairs at once.
+    [[nodiscard]] bool movesAlone(const Proxy& proxy, const Aabb<btScalar>& box,
+                                  const btDispatcher* dispatcher) const {
+        return !mayBeEager(proxy, dispatcher) &&
+               (ghostCount() == 0 || overlaps(toAabb(proxy.m_aabbMin, proxy.m_aabbMax), box));
+    }
+    [[nodiscard]] std::size_t ghostCount() const noexcept {
+        return ghosts_ != nullptr ? ghosts_->size() : 0;
+    }
+    void move(const Proxy& proxy, const Aabb<btScalar>& box);
     void moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box);
     [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
     using IsPair = FunctionRef<bool(const btBroadphasePair& pair)>;
@@ -440,9 +463,9 @@ private:
     // Whose groups have been looked at since then, a bit for each slot; empty while nobody needs to know.
     std::vector<std::uint64_t> seen_;
     std::size_t seenCount_ = 0;
-    std::vector<std::uint32_t> ghosts_;  // their slots
-    detail::PeakWatch peaks_;            // of the cache
-    std::vector<BulletProxyPair> died_;  // scratch of PairLists
+    std::unique_ptr<detail::FlatSet> ghosts_;  // their slots; made with the first
+    detail::PeakWatch peaks_;                  // of the cache
+    std::vector<BulletProxyPair> died_;        // scratch of PairLists
     std::vector<BulletProxyPair> born_;
     std::uint64_t cacheChangeCount_ = 0;  // calls that have changed it, and called back
 };

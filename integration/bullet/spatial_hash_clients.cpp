@@ -10,36 +10,24 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
-
-// Bullet, too, takes a client for a btCollisionObject when it tells ghosts, or a dispatcher, of a pair: what
-// can have none may be anything. What a client is never changes.
-bool SpatialHashBroadphase::canClientBeLookedAt(const Proxy& proxy,
-                                                const btDispatcher* dispatcher) noexcept {
-    const bool mayPair = proxy.m_collisionFilterGroup != 0 && proxy.m_collisionFilterMask != 0;
-    return proxy.client == Client::unknown && dispatcher != nullptr && mayPair &&
-           proxy.m_clientObject != nullptr;
-}
 
 bool SpatialHashBroadphase::isGhost(Proxy& proxy, const btDispatcher* dispatcher) {
     if (canClientBeLookedAt(proxy, dispatcher)) {
         const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
         const bool isGhost = object.getInternalType() == btCollisionObject::CO_GHOST_OBJECT;
         if (isGhost) {
-            proxy.ghostAt = static_cast<std::uint32_t>(ghosts_.size());
-            ghosts_.push_back(proxy.id.index);
+            if (ghosts_ == nullptr) {
+                ghosts_ = std::make_unique<detail::FlatSet>();
+            }
+            ghosts_->findOrInsert(proxy.id.index);
         }
         proxy.client = isGhost ? Client::ghost : Client::other;
     }
     return proxy.client == Client::ghost;
-}
-
-void SpatialHashBroadphase::forgetGhost(Proxy& proxy) noexcept {
-    proxyAt(ghosts_.back())->ghostAt = proxy.ghostAt;
-    ghosts_[proxy.ghostAt] = ghosts_.back();
-    ghosts_.pop_back();
 }
 
 // Those that the proxy touches. Where there are many, to ask who is there is sooner than to look at each.
@@ -50,15 +38,15 @@ std::vector<ProxyId> SpatialHashBroadphase::ghostsAt(const Proxy& proxy) const {
         return found;
     }
     const Aabb<btScalar> box = grid_.box(proxy.id);
-    if (ghosts_.size() > kFew) {
+    if (ghostCount() > kFew) {
         CollectAll all(found);
         grid_.visit(BoxRegion<btScalar>{box}, all);
         std::erase_if(found,
                       [this](ProxyId id) { return proxyAt(id.index)->client != Client::ghost; });
         return found;
     }
-    for (const std::uint32_t slot : ghosts_) {
-        const ProxyId ghost = proxyAt(slot)->id;
+    for (std::size_t i = 0; i < ghostCount(); ++i) {
+        const ProxyId ghost = proxyAt(static_cast<std::uint32_t>(ghosts_->keys()[i]))->id;
         if (overlaps(grid_.box(ghost), box)) {
             found.push_back(ghost);
         }

@@ -78,7 +78,8 @@ std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
            pairs_.memoryBytes() + proxies_.memoryBytes() +
            (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
            (died_.capacity() + born_.capacity()) * sizeof(BulletProxyPair) +
-           seen_.capacity() * sizeof(seen_[0]) + ghosts_.capacity() * sizeof(ghosts_[0]) +
+           seen_.capacity() * sizeof(seen_[0]) +
+           (ghosts_ != nullptr ? sizeof(*ghosts_) + ghosts_->memoryBytes() : 0) +
            watch_.memoryBytes() + (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
 }
 

@@ -67,7 +67,7 @@ public:
 void expectSame(Moved& batch, Moved& single) {
     const auto& a = batch.grid.store();
     const auto& b = single.grid.store();
-    EXPECT_EQ(a.proxies.waiting, b.proxies.waiting);
+    EXPECT_TRUE(std::ranges::equal(a.proxies.waiting, b.proxies.waiting));
     EXPECT_EQ(a.proxies.mobile, b.proxies.mobile);
     EXPECT_EQ(a.proxies.woken, b.proxies.woken);
     EXPECT_EQ(a.proxies.nanCount, b.proxies.nanCount);

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <broadphase/diagnostics.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace hashphase::detail {
+
+/// A list for which room is made beforehand: to append an item is to write it, and cannot fail.
+template <class Item>
+class RoomyList {
+public:
+    using value_type = Item;
+
+    /// Makes room for `count` items altogether.
+    void reserve(std::size_t count) {
+        if (count > room_.size()) {
+            room_.resize(count);
+        }
+    }
+    [[gnu::always_inline]] void push_back(const Item& item) noexcept {
+        HASHPHASE_ASSERT(size_ < room_.size(), "There is room for the item.");
+        room_.data()[size_++] = item;
+    }
+    void clear() noexcept { size_ = 0; }
+
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+    [[nodiscard]] const Item& operator[](std::size_t i) const noexcept { return room_.data()[i]; }
+    [[nodiscard]] const Item* begin() const noexcept { return room_.data(); }
+    [[nodiscard]] const Item* end() const noexcept { return room_.data() + size_; }
+    [[nodiscard]] std::size_t capacity() const noexcept { return room_.size(); }
+
+private:
+    std::vector<Item> room_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace hashphase::detail
