@@ -206,6 +206,12 @@ void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const 
         layOut(boxes);
         strayCount_ = countBuckets(boxes, parallelFor);
         straysWhenChosen_ = strayCount_;
+        listedWhenChosen_ = bucketStart_[levels_.back().firstBucket];
+    };
+    // Every search reads all of them.
+    const auto areTooManyListed = [&] {
+        return bucketStart_[levels_.back().firstBucket] >
+               2 * listedWhenChosen_ + LevelLayout<Scalar>::kThinLevel;
     };
     if (layout_->isTimeToChoose(boxes.size()) || levels_.empty()) {
         choose();
@@ -216,6 +222,8 @@ void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const 
         if (areMany(strayCount_, straysWhenChosen_)) {
             choose();
         }
+    } else if (areTooManyListed()) {
+        choose();
     }
 }
 

@@ -65,24 +65,9 @@ public:
     [[nodiscard]] std::span<const SettledBox<Scalar>> settled() const noexcept {
         return isSettled() ? std::span(*settled_) : std::span<SettledBox<Scalar>>();
     }
-    /// Of a settled table: the entry's box from the next refresh() on. Returns false, and does nothing, where
-    /// it leaves the box by which the entry is filed.
-    [[nodiscard]] bool moveWithin(std::uint32_t entry, const Aabb<Scalar>& box) noexcept {
-        SettledBox<Scalar>& own = (*settled_)[entry];
-        // By number: what has just been written so would be waited for as a whole.
-        const Scalar* const low = box.min().data();
-        const Scalar* const high = box.max().data();
-        bool isWithin = true;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            // An inverted one reaches farther than its corners say.
-            isWithin &= (low[axis] >= own.filed.low[axis]) & (high[axis] <= own.filed.high[axis]) &
-                        (low[axis] <= high[axis]);
-        }
-        for (std::size_t axis = 0; isWithin && axis < 3; ++axis) {
-            own.now.low[axis] = low[axis];
-            own.now.high[axis] = high[axis];
-        }
-        return isWithin;
+    /// Of a settled table: their boxes from the next refresh() on are the `now`, each within its `filed`.
+    [[nodiscard]] SettledBox<Scalar>* settledData() noexcept {
+        return settled_ != nullptr ? settled_->data() : nullptr;
     }
     void refresh(std::uint32_t entry) noexcept;
     void refreshAll(ParallelFor parallelFor);
@@ -172,6 +157,7 @@ private:
     std::uint32_t largestBucket_ = 0;              // of those that are cells
     std::size_t strayCount_ = 0;                   // when the levels were laid out
     std::size_t straysWhenChosen_ = 0;             // when the cell sizes were chosen
+    std::uint32_t listedWhenChosen_ = 0;           // of these, without cells
     std::vector<Level<Scalar>> levels_;
     std::vector<std::uint32_t> bucketStart_;
     std::vector<std::uint32_t> proxyIndices_;

@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace hashphase::detail {
 
@@ -235,6 +236,13 @@ struct Kernels {
     std::size_t (*selectApart)(const IndexPair* pairs, std::size_t count,
                                const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
                                IndexPair* apart);
+
+    /// Moves boxes[entries[i]].now to the box whose corners are the six numbers at corners + stride * indices[i],
+    /// where that lies within `filed` and is not inverted. Writes the numbers i of the others to `left`; returns how
+    /// many.
+    std::size_t (*moveWithin)(const Scalar* corners, std::size_t stride,
+                              const std::uint32_t* indices, const std::uint32_t* entries,
+                              std::size_t count, SettledBox<Scalar>* boxes, std::uint32_t* left);
 
     /// Writes the numbers of those of the pairs first to last to `turned`, which has room for all, whose
     /// boxes overlap now though overlapped[i] is 0, or do not though it is 1. Returns how many.

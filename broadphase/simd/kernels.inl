@@ -18,6 +18,7 @@
 //                      mask, which has kWidth, and may write so many; reads no others
 //   WidePack<Scalar>   the same for long runs, perhaps wider
 //   isApart(a, b)      whether two padded boxes do not overlap
+//   padCorners(corners, box)  makes `box` of six numbers, the min corner first
 //   fitsEdge(level, box)  whether no edge of the padded box is longer than the level's largest
 //   quantiseCorners(level, box, low)  sets `low` to the cell of the box's min corner and returns
 //                      whether the box spans one or two cells an axis, none of them clamped
@@ -116,6 +117,35 @@ std::size_t selectTurned(const IndexPair* pairs, const std::uint8_t* overlapped,
 }
 
 template <class Scalar>
+PaddedBox<Scalar> insideOut(const PaddedBox<Scalar>& box) {
+    PaddedBox<Scalar> turned;
+    std::memcpy(turned.low, box.high, sizeof(turned.low));
+    std::memcpy(turned.high, box.low, sizeof(turned.high));
+    return turned;
+}
+
+// A box that is within another one is not apart from it when it is turned inside out; nor is one that is not
+// inverted apart from itself.
+template <class Scalar>
+std::size_t moveWithin(const Scalar* corners, std::size_t stride, const std::uint32_t* indices,
+                       const std::uint32_t* entries, std::size_t count, SettledBox<Scalar>* boxes,
+                       std::uint32_t* left) {
+    std::size_t leftCount = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        SettledBox<Scalar>& own = boxes[entries[i]];
+        PaddedBox<Scalar> box;
+        padCorners(corners + stride * indices[i], box);
+        const PaddedBox<Scalar> turned = insideOut(box);
+        if (isApart(own.filed, turned) || isApart(box, box)) {
+            left[leftCount++] = static_cast<std::uint32_t>(i);
+        } else {
+            own.now = box;
+        }
+    }
+    return leftCount;
+}
+
+template <class Scalar>
 constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinLevel<Scalar>,
                                    &queryLevel<Scalar>,
@@ -128,6 +158,7 @@ constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinList<Scalar>,
                                    &findRange<Scalar>,
                                    &selectApart<Scalar>,
+                                   &moveWithin<Scalar>,
                                    &selectTurned<Scalar>,
                                    &countWithin<Scalar>,
                                    &countGroupsWithin<Scalar>,

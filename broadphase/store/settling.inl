@@ -7,8 +7,10 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/prefetch.hpp>
+#include <broadphase/simd/kernels.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -151,28 +153,38 @@ void Store<Scalar>::growBoxes() {
 template <class Scalar>
 void Store<Scalar>::followSettled() {
     constexpr std::size_t kMany = 4;
-    constexpr std::size_t kAhead = 12;
+    constexpr std::size_t kAtOnce = 64;
     if (settling == nullptr) {
         return;
     }
-    const RoomyList<std::uint32_t>& waiting = proxies.waiting;
     Table<Scalar>& table = tables.resting;
     settling->areManyChanged = proxies.settledChanged > table.size() / kMany;
     settling->changedEntries.clear();
-    for (std::size_t i = 0; proxies.settledChanged > 0 && i < waiting.size(); ++i) {
-        if (i + kAhead < waiting.size()) {
-            const Record& later = proxies.records[waiting[i + kAhead]];
-            prefetch(later.hasSlack ? table.settled().data() + later.listedAt : nullptr);
+    std::array<std::uint32_t, kAtOnce> proxyIndices;
+    std::array<std::uint32_t, kAtOnce> entries;
+    std::array<std::uint32_t, kAtOnce> left;
+    const std::size_t count = proxies.settledChanged > 0 ? proxies.waiting.size() : 0;
+    for (std::size_t i = 0; i < count;) {
+        std::size_t some = 0;
+        for (; i < count && some < kAtOnce; ++i) {
+            const std::uint32_t proxyIndex = proxies.waiting[i];
+            const Record& record = proxies.records[proxyIndex];
+            proxyIndices[some] = proxyIndex;
+            entries[some] = record.listedAt;
+            prefetch(record.hasSlack ? table.settledData() + record.listedAt : nullptr);
+            some += record.hasSlack ? 1 : 0;
         }
-        const Record& record = proxies.records[waiting[i]];
-        if (!record.hasSlack) {
-            continue;
+        const std::size_t leftCount = kernels<Scalar>().moveWithin(
+            proxies.records.data()->box.min().data(), sizeof(Record) / sizeof(Scalar),
+            proxyIndices.data(), entries.data(), some, table.settledData(), left.data());
+        for (std::size_t k = 0; k < leftCount; ++k) {
+            noteLeft(proxyIndices[left[k]]);
+            wake(proxyIndices[left[k]]);
         }
-        if (!table.moveWithin(record.listedAt, record.box)) {
-            noteLeft(waiting[i]);
-            wake(waiting[i]);
-        } else if (!settling->areManyChanged) {
-            settling->changedEntries.push_back(record.listedAt);
+        for (std::size_t k = 0; k < some && !settling->areManyChanged; ++k) {
+            if (proxies.records[proxyIndices[k]].hasSlack) {
+                settling->changedEntries.push_back(entries[k]);
+            }
         }
     }
 }

@@ -177,7 +177,7 @@ void Store<Scalar>::listChange(std::uint32_t proxyIndex) noexcept {
 
 // What has slack wakes only where it leaves it, which the update will see.
 template <class Scalar>
-void Store<Scalar>::moveAny(std::uint32_t proxyIndex, const Box& box) {
+void Store<Scalar>::moveAny(std::uint32_t proxyIndex, Box box) {  // NOLINT(*-value-param)
     beforeChange();  // by which it may have lost its slack
     Record& record = proxies.records[proxyIndex];
     countChange(record);

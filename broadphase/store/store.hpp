@@ -96,7 +96,8 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
         moveInPlace(record, box, cost.changed, proxies.settledChanged,
                     [&]() noexcept { proxies.waiting.push_back(proxyIndex); });
     }
-    void moveAny(std::uint32_t proxyIndex, const Box& box);
+    // By value, lest that of move() had to be in memory for it.
+    void moveAny(std::uint32_t proxyIndex, Box box);
     /// Whether a move writes the record, two counts and the list of changes, and nothing else.
     [[nodiscard, gnu::always_inline]] static bool movesInPlace(const Record& record,
                                                                const Box& box) noexcept {

@@ -115,7 +115,7 @@ private:
         if (!owner_.areGroupsKnown(proxy)) {
             return false;
         }
-        return isSame(i) || owner_.movesAlone(proxy, toAabb(mins_[i], maxs_[i]), dispatcher_);
+        return isSame(i) || owner_.movesAlone(proxy, mins_[i], maxs_[i], dispatcher_);
     }
     [[nodiscard]] std::size_t firstAlone(std::size_t from) const {
         const std::span<const char> alone(scratch().isAlone.data(), proxies_.size());

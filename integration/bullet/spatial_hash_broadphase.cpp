@@ -158,16 +158,16 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     if (own->id.isNull()) {  // destroyed before
         return;
     }
-    const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
-    if (sweeps_ != nullptr || !areGroupsKnown(*own) || !movesAlone(*own, box, dispatcher)) {
+    if (sweeps_ != nullptr || !areGroupsKnown(*own) ||
+        !movesAlone(*own, aabbMin, aabbMax, dispatcher)) {
         setAnyAabb(*own, aabbMin, aabbMax, dispatcher);
         return;
     }
-    if (!isSameBits(toAabb(own->m_aabbMin, own->m_aabbMax), box)) {
+    if (!isSameBits(own->m_aabbMin, aabbMin) || !isSameBits(own->m_aabbMax, aabbMax)) {
         own->m_aabbMin = aabbMin;
         own->m_aabbMax = aabbMax;
-        grid_.move(own->id, box);
         changedKinds_ |= detail::GroupKinds::bit(own->kind);
+        grid_.move(own->id, toAabb(aabbMin, aabbMax));
     }
     if (!seen_.empty()) {
         noteSeen(*own, true);

@@ -412,11 +412,12 @@ private:
     // setAabb() where it may do more than move the box.
     void setAnyAabb(Proxy& proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                     btDispatcher* dispatcher);
-    // Whether a move to the box finds no pairs at once.
-    [[nodiscard]] bool movesAlone(const Proxy& proxy, const Aabb<btScalar>& box,
-                                  const btDispatcher* dispatcher) const {
+    // Whether a move there finds no pairs at once.
+    [[nodiscard]] bool movesAlone(const Proxy& proxy, const btVector3& aabbMin,
+                                  const btVector3& aabbMax, const btDispatcher* dispatcher) const {
         return !mayBeEager(proxy, dispatcher) &&
-               (ghostCount() == 0 || overlaps(toAabb(proxy.m_aabbMin, proxy.m_aabbMax), box));
+               (ghostCount() == 0 ||
+                overlaps(toAabb(proxy.m_aabbMin, proxy.m_aabbMax), toAabb(aabbMin, aabbMax)));
     }
     [[nodiscard]] std::size_t ghostCount() const noexcept {
         return ghosts_ != nullptr ? ghosts_->size() : 0;
