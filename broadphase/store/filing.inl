@@ -92,7 +92,6 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
 template <class Scalar>
 bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
     const std::size_t filedCount = tables.resting.size() - tables.restingErased;
-    constexpr std::size_t kFiling = 2;  // costs as much as so many updates of mobile ones
     const bool withSlack = isWorthSlack();
     const std::uint32_t calmCount = withSlack ? settling->calmCount : 0;
     const std::uint32_t joining = frame.idleCount + calmCount;
@@ -102,7 +101,7 @@ bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
             withSlack ? kOftenObserved : std::min<std::uint8_t>(observedEach + 1, kSeldomObserved);
     }
     if (std::max(joining, tables.restingErased) < worthRefiling(filedCount) &&
-        tables.idleUpdates < kFiling * (kFewIdle + filedCount + joining)) {
+        tables.idleUpdates < kFewIdle + filedCount + joining) {
         return false;
     }
     // Those that stay at rest come first, then those that join.

@@ -20,7 +20,7 @@ namespace {
 // Who stays within its slack for so many updates has paid for being settled; for so many more slack would not pay.
 constexpr std::uint32_t kWorthSettling = 16;
 constexpr std::uint32_t kWorthMoreSlack = 64;
-constexpr std::uint8_t kMostSlackFactor = 48;
+constexpr std::uint8_t kMostSlackFactor = 128;
 constexpr std::uint8_t kMostPatience = 16;
 
 // Of all coordinates.
