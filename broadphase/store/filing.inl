@@ -100,6 +100,7 @@ bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
         observedEach =
             withSlack ? kOftenObserved : std::min<std::uint8_t>(observedEach + 1, kSeldomObserved);
     }
+    // To file one takes about as long as an update of a mobile one.
     if (std::max(joining, tables.restingErased) < worthRefiling(filedCount) &&
         tables.idleUpdates < kFewIdle + filedCount + joining) {
         return false;

@@ -303,6 +303,7 @@ public:
     /// around the way; Sweeps::visit() searches the way itself, and Sweeps::motion() returns it.
     [[nodiscard]] const Sweeps<btScalar>* sweeps() const noexcept { return sweeps_.get(); }
 
+    /// The configuration it was made with.
     [[nodiscard]] const SpatialHashConfig& config() const noexcept { return config_; }
 
     /// What the last calculateOverlappingPairs() cost.
