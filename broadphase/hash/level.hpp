@@ -19,16 +19,11 @@ struct Row {
     std::int32_t z;
 };
 
-/// A hash of a row's number whose lower bits are well mixed.
-[[nodiscard, gnu::always_inline]] inline std::uint32_t mixRow(std::uint32_t row) noexcept {
-    std::uint32_t hash = row ^ (row >> 16);
-    hash *= 0x7feb352dU;
-    return hash ^ (hash >> 15);
-}
-
 /// How a level files boxes. A dense one numbers a well-filled range of cells through (the paper's
-/// formula), with empty cells between rows and between layers. A hashed one hashes rows into a number of
-/// buckets that is a power of two. A list has no cells: it has one bucket, which every walk reads whole.
+/// formula), with empty cells between rows and between layers. A hashed one numbers cells through
+/// wherever they lie, modulo the number of buckets: what is far apart may share buckets, as if it had
+/// been moved together, and neighbouring rows are as far apart as those of a dense one. A list has no
+/// cells: it has one bucket, which every walk reads whole.
 enum class LevelKind : std::uint8_t { dense, hashed, list };
 
 /// Which entries a level has, how coordinates become its cells, and how its rows of cells become
@@ -51,17 +46,17 @@ struct Level {
     std::int32_t high[4] = {};
     std::uint32_t strideY = 0;
     std::uint32_t strideZ = 0;
-    std::uint32_t denseBase = 0;
     std::uint32_t sortedCount = 0;  // of sortedBuckets
+    std::int64_t base = 0;          // the number of cell 0, 0, 0; none is negative
+    double lapsPerBucket = 0;       // of a hashed one: 1 / bucketCount
 
     // Into the arrays of the table, which sets them when these are complete.
     const Scalar* columns[6] = {};                        // min x, y, z, max x, y, z of all entries
     const std::uint32_t* bucketStart = nullptr;           // of the level's own buckets, and the end
     const std::uint32_t* bucketOfEntry = nullptr;         // of all entries, counted over all levels
     const std::uint32_t* proxyIndices = nullptr;          // of all entries
-    const Row* rowOfEntry = nullptr;                      // of all entries, where a level is hashed
     const SortedBucket<Scalar>* sortedBuckets = nullptr;  // the level's own, in ascending order
-    // By what these are sorted: the min corners by which entries are filed, so many numbers apart.
+    // The min corners by which entries are filed, so many numbers apart: buckets are sorted by them.
     const Scalar* sortKeys[3] = {};
     std::uint32_t sortStride = 1;
 
@@ -74,25 +69,42 @@ struct Level {
     [[nodiscard, gnu::always_inline]] std::uint32_t count() const noexcept {
         return lastEntry - firstEntry;
     }
+    /// Whether a dense one has no cells, as the population is too sparse for it.
+    [[nodiscard, gnu::always_inline]] bool isEmpty() const noexcept { return low[0] > high[0]; }
 
     [[nodiscard, gnu::always_inline]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
         // Not 0 * infinity, along a flat axis.
         return inverseCellSize[axis] == 0 ? 0 : quantise(x, origin[axis], inverseCellSize[axis]);
     }
 
-    /// Bucket of cell x = 0 of a row, among the level's own; of a hashed one before the modulo.
-    template <bool kIsDense>
-    [[nodiscard, gnu::always_inline]] std::uint32_t rowBase(Row row) const noexcept {
-        const std::uint32_t number = static_cast<std::uint32_t>(row.y) * strideY +
-                                     static_cast<std::uint32_t>(row.z) * strideZ;
-        return kIsDense ? number + denseBase : mixRow(number);
+    /// By how much the numbers of a row's cells exceed those of row 0, 0.
+    [[nodiscard, gnu::always_inline]] std::int64_t offset(Row row) const noexcept {
+        return std::int64_t{row.y} * strideY + std::int64_t{row.z} * strideZ;
     }
-
-    /// Bucket of a cell from low to high, among the level's own.
+    /// The bucket of a numbered cell, among the level's own.
+    template <bool kIsDense>
+    [[nodiscard, gnu::always_inline]] std::uint32_t bucketOf(std::int64_t number) const noexcept {
+        const std::int64_t shifted = base + number;
+        if constexpr (kIsDense) {
+            return static_cast<std::uint32_t>(shifted);
+        }
+        // Not by a division of integers, which many processors are slow at. The quotient is below 2^31, and
+        // rounded by less than 1.
+        const auto count = static_cast<std::int64_t>(bucketCount);
+        const auto laps = static_cast<std::int64_t>(static_cast<double>(shifted) * lapsPerBucket);
+        std::int64_t rest = shifted - laps * count;
+        rest += rest < 0 ? count : 0;
+        rest -= rest >= count ? count : 0;
+        return static_cast<std::uint32_t>(rest);
+    }
+    /// The bucket of a cell from low to high, among the level's own.
+    template <bool kIsDense>
+    [[nodiscard, gnu::always_inline]] std::uint32_t bucketOf(std::int32_t x,
+                                                             Row row) const noexcept {
+        return bucketOf<kIsDense>(x + offset(row));
+    }
     [[nodiscard, gnu::always_inline]] std::uint32_t bucket(std::int32_t x, Row row) const noexcept {
-        const auto column = static_cast<std::uint32_t>(x);
-        return isDense() ? rowBase<true>(row) + column
-                         : (rowBase<false>(row) + column) & (bucketCount - 1);
+        return isDense() ? bucketOf<true>(x, row) : bucketOf<false>(x, row);
     }
 };
 

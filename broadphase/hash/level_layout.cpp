@@ -4,7 +4,8 @@
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/geometry/origin_shift.hpp>
 
-#include <bit>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 namespace hashphase::detail {
@@ -12,10 +13,6 @@ namespace {
 
 // How often the cell sizes are looked at again while the number of proxies stays about the same.
 constexpr std::uint32_t kBuildsBetweenCensuses = 128;
-
-// Multipliers of hashed rows: odd, with well-mixed low bits.
-constexpr std::uint32_t kHashStrideY = 0x9e3779b1U;
-constexpr std::uint32_t kHashStrideZ = 0x85ebca77U;
 
 // A layout reaches a little beyond the population, so that it holds for some builds.
 std::int32_t marginOf(std::int32_t low, std::int32_t high) {
@@ -87,19 +84,44 @@ bool makeDense(Level<Scalar>& level, std::uint32_t count) {
     }
     level.strideY = static_cast<std::uint32_t>(pitch);
     level.strideZ = static_cast<std::uint32_t>(pitch * rows);
-    level.denseBase = 1 - static_cast<std::uint32_t>(level.low[0]) -
-                      static_cast<std::uint32_t>(level.low[1]) * level.strideY -
-                      static_cast<std::uint32_t>(level.low[2]) * level.strideZ;
-    level.bucketCount = static_cast<std::uint32_t>(pitch * (rows * layers + 1) + 2);
+    level.base = 0;
+    level.base = 1 - level.low[0] - level.offset({level.low[1], level.low[2]});
+    const std::uint64_t rowsBehind = rows * layers == 1 ? 0 : 1;
+    level.bucketCount = static_cast<std::uint32_t>(pitch * (rows * layers + rowsBehind) + 2);
     return true;
 }
 
+// Cells go round after so many along x and y: all that there are along short axes, and equally many along the
+// others, so that each of the things that lie far apart has its cells to itself and shares some with others.
+// These numbers are odd, as that of buckets is, lest what lies at a power of two apart share all of them. They
+// are no less than 3, and together no more than a quarter of the buckets, so that a cell and the 26 around it
+// have a bucket each.
 template <class Scalar>
-void layOutHashed(Level<Scalar>& level, std::uint32_t count) {
-    level.kind = LevelKind::hashed;
-    level.strideY = kHashStrideY;
-    level.strideZ = kHashStrideZ;
-    level.bucketCount = std::bit_ceil(std::max(2 * count, 64U));
+void numberHashed(Level<Scalar>& level, const CellReach& reach, std::uint32_t bucketCount) {
+    const auto extent = [&](std::size_t axis) {
+        return double{1} + reach.high[axis] - reach.low[axis];
+    };
+    std::array<std::size_t, 3> shortestFirst{0, 1, 2};
+    std::sort(shortestFirst.begin(), shortestFirst.end(),
+              [&](std::size_t a, std::size_t b) { return extent(a) < extent(b); });
+    std::array<std::uint32_t, 3> period{1, 1, 1};
+    double left = bucketCount;
+    double axesLeft = 3;
+    for (const std::size_t axis : shortestFirst) {
+        const double share = std::pow(left, 1 / axesLeft--);
+        if (level.inverseCellSize[axis] != 0) {
+            period[axis] =
+                1 | static_cast<std::uint32_t>(std::min(std::max(extent(axis), 3.0) + 1, share));
+            left /= period[axis];
+        }
+    }
+    level.strideY = period[0];
+    level.strideZ = period[0] * period[1];
+    level.bucketCount = bucketCount;
+    level.lapsPerBucket = 1 / static_cast<double>(bucketCount);
+    // So many whole laps that no cell has a negative number.
+    const std::int64_t most = level.offset({kCellLimit, kCellLimit}) + kCellLimit;
+    level.base = (most / bucketCount + 1) * bucketCount;
 }
 
 // The cell sizes as they were chosen, but for those that few boxes have: what is of such a size goes to
@@ -163,7 +185,7 @@ void LevelLayout<Scalar>::choose(std::span<const PaddedBox<Scalar>> boxes,
     for (std::size_t axis = 0; axis < 3; ++axis) {
         origin_[axis] = static_cast<Scalar>(middle[axis]);
     }
-    middle_ = census_.range(0.5 / kStrays);
+    middle_ = census_.range(kShareOfStrays);
 }
 
 // A few strays must not keep all the others from being dense: where the whole population
@@ -189,6 +211,58 @@ void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& rea
     }
 }
 
+// Which cells share buckets is chance, unless things lie at equal distances: then the same chance may be that of
+// many. So some numbers of buckets are tried, until cells of a sample share no more than by chance.
+template <class Scalar>
+void LevelLayout<Scalar>::layOutHashed(Level<Scalar>& level, const CellReach& reach,
+                                       std::uint32_t count,
+                                       std::span<const PaddedBox<Scalar>> boxes) {
+    constexpr std::size_t kMostSamples = 2048;
+    constexpr std::uint32_t kMostTries = 8;
+    level.kind = LevelKind::hashed;
+    cells_.clear();
+    for (std::size_t i = 0; i < boxes.size(); i += 1 + boxes.size() / kMostSamples) {
+        if (const std::optional<Cell> cell = cellOn(level, unpadded(boxes[i]))) {
+            cells_.push_back(*cell);
+        }
+    }
+    std::sort(cells_.begin(), cells_.end());
+    cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
+    const auto bucketCountOf = [count](std::uint32_t attempt) {
+        return 1 | static_cast<std::uint32_t>(
+                       std::max(std::uint64_t{64}, std::uint64_t{count} * (32 + attempt) / 16));
+    };
+    std::uint32_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::uint32_t attempt = 0; attempt < kMostTries && least > 1.25; ++attempt) {
+        numberHashed(level, reach, bucketCountOf(attempt));
+        const double crowding = crowdingOf(level);
+        if (crowding < least) {
+            least = crowding;
+            best = attempt;
+        }
+    }
+    numberHashed(level, reach, bucketCountOf(best));
+}
+
+// How many pairs of the sampled cells share a bucket, of how many would by chance.
+template <class Scalar>
+double LevelLayout<Scalar>::crowdingOf(const Level<Scalar>& level) {
+    buckets_.clear();
+    for (const auto& [x, y, z] : cells_) {
+        buckets_.push_back(level.bucket(x, {y, z}));
+    }
+    std::sort(buckets_.begin(), buckets_.end());
+    std::size_t pairs = 0;
+    std::size_t run = 0;
+    for (std::size_t i = 1; i < buckets_.size(); ++i) {
+        run = buckets_[i] == buckets_[i - 1] ? run + 1 : 0;
+        pairs += run;
+    }
+    const auto cells = static_cast<double>(cells_.size());
+    return static_cast<double>(pairs) / (1 + cells * cells / (2.0 * level.bucketCount));
+}
+
 template <class Scalar>
 void LevelLayout<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes,
                                  std::vector<Level<Scalar>>& levels) {
@@ -196,8 +270,8 @@ void LevelLayout<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes,
     for (const auto& [level, reach] : candidatesFor(sizes_, origin_, boxes)) {
         Level<Scalar>& dense = levels.emplace_back(level);
         layOutDense(dense, reach);
-        const bool hasCells = dense.low[0] <= dense.high[0];
-        layOutHashed(levels.emplace_back(level), hasCells ? reach.count / kStrays : reach.count);
+        layOutHashed(levels.emplace_back(level), reach,
+                     dense.isEmpty() ? reach.count : reach.count / kBoxesPerStray, boxes);
     }
     levels.emplace_back();
     std::uint32_t firstBucket = 0;

@@ -41,9 +41,6 @@ public:
     /// A level of so few proxies costs every walk more than reading them as a list.
     static constexpr std::uint32_t kThinLevel = 32;
 
-    /// Up to one in so many may lie beyond the cells that are dense.
-    static constexpr std::uint32_t kStrays = 32;
-
     /// Whether the cell sizes are to be chosen again for so many boxes: when the number has changed,
     /// and now and then. To be asked once a build, which it counts.
     [[nodiscard]] bool isTimeToChoose(std::size_t count);
@@ -60,20 +57,30 @@ public:
     void shiftOrigin(const Vector3<Scalar>& shift) noexcept;
 
     [[nodiscard]] const LevelSizes& sizes() const noexcept { return sizes_; }
-    void releaseUnusedMemory() noexcept { census_ = {}; }
+    void releaseUnusedMemory() noexcept {
+        census_ = {};
+        cells_ = {};
+        buckets_ = {};
+    }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return sizeof(*this) + census_.memoryBytes();
+        return sizeof(*this) + census_.memoryBytes() + cells_.capacity() * sizeof(Cell) +
+               buckets_.capacity() * sizeof(std::uint32_t);
     }
 
 private:
     void layOutDense(Level<Scalar>& level, const CellReach& reach) const;
+    void layOutHashed(Level<Scalar>& level, const CellReach& reach, std::uint32_t count,
+                      std::span<const PaddedBox<Scalar>> boxes);
+    [[nodiscard]] double crowdingOf(const Level<Scalar>& level);
 
     LevelSizes sizes_;
     std::array<Scalar, 3> origin_{};  // finite
     SizeCensus::Range middle_;  // where all but a few of the boxes began, when sizes were chosen
     std::uint64_t countWhenChosen_ = 0;
     std::uint32_t buildsSinceChosen_ = 0;
-    SizeCensus census_;  // scratch of choose()
+    SizeCensus census_;                   // scratch of choose()
+    std::vector<Cell> cells_;             // scratch of layOut(): a sample
+    std::vector<std::uint32_t> buckets_;  // the same: theirs
 };
 
 }  // namespace hashphase::detail

@@ -12,14 +12,14 @@ namespace hashphase::detail {
 namespace {
 
 // Modelled costs [ns], measured on a plain x86-64 build: looking up a run of buckets that are
-// dense, or hashed; one box more in a run; the mispredicted branches of a long run; a box
-// of the contiguous list of those that fit no level; keeping a cell that is dense.
+// dense, or hashed, which may wrap around; one box more in a run; the mispredicted branches of a long
+// run; a box of the contiguous list of those that fit no level; keeping a bucket.
 constexpr double kRunCost = 3.7;
-constexpr double kHashedRunCost = 8.5;
+constexpr double kHashedRunCost = 4.5;
 constexpr double kBoxCost = 0.15;
 constexpr double kLongRunCost = 8.5;
 constexpr double kListedBoxCost = 0.4;
-constexpr double kCellCost = 0.85;
+constexpr double kBucketCost = 0.85;
 
 // The first eight boxes of a run are tested at once, whether or not there are as many: of runs of
 // this mean length about half are long.
@@ -132,11 +132,11 @@ double SizeCensus::rowsNearby(double cellSize, AxisSet flat) const {
     return rows;
 }
 
-// Cells between the ends of the population.
+// Cells between the ends of all but a few of the population, which are those that may be dense.
 double SizeCensus::cellsAround(double cellSize, AxisSet flat) const {
     double cells = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        cells *= has(flat, axis) ? 1 : spread_[axis] / cellSize + 1;
+        cells *= has(flat, axis) ? 1 : mostOfSpread_[axis] / cellSize + 1;
     }
     return cells;
 }
@@ -152,8 +152,9 @@ SizeCensus::LevelCost SizeCensus::costOfLevel(double cellSize, double own, doubl
         const double cells = cellsAround(cellSize, flat);
         const bool isDense = cells < kMostCellsPerBox * own + kFewCells;
         const double runCost = isDense ? kRunCost : kHashedRunCost;
+        const double buckets = isDense ? cells : kHashedBucketsPerBox * own;
         const double runs = 0.5 * (rows + 1);
-        const double cost = (isDense ? cells * kCellCost : 0) +
+        const double cost = buckets * kBucketCost +
                             own * (runs * runCost + costOfReading(runs, 0.5 * boxes)) +
                             smaller * (rows * runCost + costOfReading(rows, boxes));
         if (cost < least.cost) {
@@ -179,15 +180,19 @@ double SizeCensus::smallestUsefulCell() const {
 
 void SizeCensus::measureSpread() {
     spread_ = {};
+    mostOfSpread_ = {};
     middle_ = {};
     const auto [middle, same] = range(0.5);
     middle_ = middle;
+    const auto [first, last] = range(kShareOfStrays);
     // The middle nine tenths, so that a few strays do not stretch the picture.
     const auto [low, high] = range(0.05);
     density_.measure(samples_, low, high);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double extent = high[axis] / 0.9 - low[axis] / 0.9;
         spread_[axis] = std::min(extent, std::numeric_limits<double>::max());
+        mostOfSpread_[axis] =
+            std::min(last[axis] - first[axis], std::numeric_limits<double>::max());
     }
 }
 

@@ -22,6 +22,13 @@ inline constexpr int kMaxLevels = 16;
 inline constexpr std::uint32_t kMostCellsPerBox = 6;
 inline constexpr std::uint32_t kFewCells = 1024;
 
+/// A hashed level has so many buckets for each box, or a few more.
+inline constexpr std::uint32_t kHashedBucketsPerBox = 2;
+
+/// Up to one box in so many may lie beyond the cells that are dense, half of them at either end of an axis.
+inline constexpr std::uint32_t kBoxesPerStray = 32;
+inline constexpr double kShareOfStrays = 0.5 / kBoxesPerStray;
+
 /// Cell edges [m], finest first. What fits no level is filed without cells and is looked at by
 /// every walk. Along its flat axes a level has one cell for everything: on a terrain, looking up
 /// the layers above and below costs more than they keep away.
@@ -108,6 +115,7 @@ private:
     // Drawn from the above by conclude().
     bool isConcluded_ = false;
     std::array<double, 3> spread_{};
+    std::array<double, 3> mostOfSpread_{};  // but for the strays
     std::array<double, 3> middle_{};
     DensityEstimate density_;
     std::vector<SizeClass> classes_;  // occupied ones in ascending order, behind an empty one

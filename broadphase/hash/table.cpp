@@ -46,8 +46,8 @@ FixedList<SizeClass<Scalar>, kMaxLevels> Table<Scalar>::sizeClasses() const {
     return classes;
 }
 
-// Finds every box's bucket and counts how many each has. Returns how many boxes lie where it takes
-// longer to find them: listed without cells, or beyond the cells that are dense.
+// Finds every box's bucket and counts how many each has. Returns how many boxes are strays: listed without
+// cells, or beyond the cells that are dense where there are any.
 template <class Scalar>
 std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes,
                                         ParallelFor parallelFor) {
@@ -63,11 +63,12 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
             ++bucketStart_[bucket];
         }
     }
-    std::size_t count = 0;
-    for (const Level<Scalar>& level : levels_) {
-        const auto first = bucketStart_.begin() + level.firstBucket;
-        count +=
-            level.isDense() ? 0 : std::accumulate(first, first + level.bucketCount, std::size_t{0});
+    std::size_t count = bucketStart_[levels_.back().firstBucket];
+    for (const auto& [dense, hashed] : classes) {
+        const auto first = bucketStart_.begin() + hashed->firstBucket;
+        count += dense->isEmpty()
+                     ? 0
+                     : std::accumulate(first, first + hashed->bucketCount, std::size_t{0});
     }
     return count;
 }
@@ -119,54 +120,36 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxIndices,
             }
         }
     });
-    computeRows();
-    computeFlatExtents();
+    computeExtents();
     linkLevels();
 }
 
-// Hashed rows are told apart by their coordinates, and no search need look beyond them.
+// No search need look beyond the cells that a hashed level has. Along a flat axis, cells do not tell where
+// the boxes are; inverted ones end before they begin.
 template <class Scalar>
-void Table<Scalar>::computeRows() {
-    const auto isHashed = [](const Level<Scalar>& level) {
-        return level.hasCells() && !level.isDense() && level.count() > 0;
-    };
-    const bool isNeeded = std::any_of(levels_.begin(), levels_.end(), isHashed);
-    rowOfEntry_.resize(isNeeded ? proxyIndices_.size() : 0);
+void Table<Scalar>::computeExtents() {
     for (Level<Scalar>& level : levels_) {
-        if (!isHashed(level)) {
-            continue;
-        }
-        CellReach reach;
-        for (std::uint32_t i = level.firstEntry; i < level.lastEntry; ++i) {
-            const Cell cell{level.cell(bounds_[0][i], 0), level.cell(bounds_[1][i], 1),
-                            level.cell(bounds_[2][i], 2)};
-            reach.add(cell);
-            rowOfEntry_[i] = {cell[1], cell[2]};
-        }
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            level.low[axis] = reach.low[axis];
-            level.high[axis] = reach.high[axis];
-        }
-    }
-}
-
-// Along a flat axis, cells do not tell where the boxes are. Inverted ones end before they begin.
-template <class Scalar>
-void Table<Scalar>::computeFlatExtents() {
-    const auto find = kernels<Scalar>().findRange;
-    for (Level<Scalar>& level : levels_) {
-        for (std::size_t axis = 0; level.hasCells() && axis < 3; ++axis) {
-            if (level.inverseCellSize[axis] != 0 || level.count() == 0) {
+        for (std::size_t axis = 0; level.hasCells() && level.count() > 0 && axis < 3; ++axis) {
+            const auto rangeOf = [&](std::size_t column) {
+                std::array<Scalar, 2> range{};
+                kernels<Scalar>().findRange(bounds_[column].data(), level.firstEntry,
+                                            level.lastEntry, &range[0], &range[1]);
+                return range;
+            };
+            const bool isFlat = level.inverseCellSize[axis] == 0;
+            if (level.isDense() && !isFlat) {
                 continue;
             }
-            std::array<Scalar, 2> least{};
-            std::array<Scalar, 2> greatest{};
-            for (std::size_t end = 0; end < 2; ++end) {
-                find(bounds_[axis + 3 * end].data(), level.firstEntry, level.lastEntry, &least[end],
-                     &greatest[end]);
+            const auto [least, greatest] = rangeOf(axis);
+            if (!level.isDense()) {
+                level.low[axis] = level.cell(least, axis);
+                level.high[axis] = level.cell(greatest, axis);
             }
-            level.lowest[axis] = std::min(least[0], least[1]);
-            level.highest[axis] = std::max(greatest[0], greatest[1]);
+            if (isFlat) {
+                const auto [leastEnd, greatestEnd] = rangeOf(axis + 3);
+                level.lowest[axis] = std::min(least, leastEnd);
+                level.highest[axis] = std::max(greatest, greatestEnd);
+            }
         }
     }
 }
@@ -199,7 +182,7 @@ void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const 
                                 ParallelFor parallelFor) {
     const auto areMany = [&](std::size_t strays, std::size_t usual) {
         using Layout = LevelLayout<Scalar>;
-        return strays > 2 * usual + Layout::kThinLevel + boxes.size() / Layout::kStrays;
+        return strays > 2 * usual + Layout::kThinLevel + boxes.size() / kBoxesPerStray;
     };
     const auto choose = [&] {
         layout_->choose(boxes, fixed);
@@ -238,7 +221,6 @@ void Table<Scalar>::linkLevels() noexcept {
         level.bucketStart = bucketStart_.data() + level.firstBucket;
         level.bucketOfEntry = bucketOfEntry_.data();
         level.proxyIndices = proxyIndices_.data();
-        level.rowOfEntry = rowOfEntry_.data();
         level.sortedBuckets = sorted;
         sorted += level.sortedCount;
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -321,7 +303,7 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
            (bucketStart_.capacity() + proxyIndices_.capacity() + order_.capacity() +
             bucketOfEntry_.capacity() + buckets_.capacity() + longOnes_.capacity()) *
                sizeof(std::uint32_t) +
-           6 * bounds_[0].capacity() * sizeof(Scalar) + rowOfEntry_.capacity() * sizeof(Row) +
+           6 * bounds_[0].capacity() * sizeof(Scalar) +
            sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
            (settled_ != nullptr
                 ? sizeof(*settled_) + settled_->capacity() * sizeof(SettledBox<Scalar>)
@@ -340,7 +322,6 @@ void Table<Scalar>::releaseUnusedMemory() noexcept {
     for (auto* numbers : {&bucketStart_, &proxyIndices_, &order_, &bucketOfEntry_}) {
         numbers->shrink_to_fit();
     }
-    rowOfEntry_.shrink_to_fit();
     sortedBuckets_.shrink_to_fit();
     for (auto& column : bounds_) {
         column.shrink_to_fit();

@@ -149,8 +149,7 @@ private:
         std::span<std::uint32_t> crowd, std::span<const PaddedBox<Scalar>> boxes);
     [[nodiscard]] bool isSorted(const SortedBucket<Scalar>& sorted) const;
     [[nodiscard]] bool areSorted() const;
-    void computeRows();
-    void computeFlatExtents();
+    void computeExtents();
     void linkLevels() noexcept;
 
     std::unique_ptr<LevelLayout<Scalar>> layout_;  // made when the first box is filed
@@ -163,7 +162,6 @@ private:
     std::vector<std::uint32_t> proxyIndices_;
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> bucketOfEntry_;
-    std::vector<Row> rowOfEntry_;  // where a level is hashed
     std::vector<SortedBucket<Scalar>> sortedBuckets_;
     std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
 

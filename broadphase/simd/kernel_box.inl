@@ -223,8 +223,11 @@ bool isInRow(const Level<Scalar>& level, std::uint32_t entry, Row row) {
     if constexpr (kIsDense) {
         return true;
     } else {
-        const Row own = level.rowOfEntry[entry];
-        return own.y == row.y && own.z == row.z;
+        const auto cellAlong = [&](std::size_t axis) {
+            const SortKeys<Scalar> filed{level.sortKeys[axis], level.sortStride};
+            return level.cell(filed[entry], axis);
+        };
+        return cellAlong(1) == row.y && cellAlong(2) == row.z;
     }
 }
 

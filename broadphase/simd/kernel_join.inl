@@ -52,12 +52,12 @@ std::uint64_t joinRests(const Neighbourhood<Scalar, kIsDense, kRows>& around, co
         const Run rest = {runs[k].first + kWidth, runs[k].last};
         if (rest.last > rest.first) {
             tested -= rest.last - rest.first;
-            scan<kIsDense>(around.level, query, rest, around.row(entry, k), found, tested);
+            scan<true>(around.level, query, rest, Row{}, found, tested);
         }
     }
     for (int k = 0; wraps && k < kRows; ++k) {
         const Run rest = around.buckets(entry, k).wrapped(around.level);
-        scan<kIsDense>(around.level, query, rest, around.row(entry, k), found, tested);
+        scan<true>(around.level, query, rest, Row{}, found, tested);
     }
     return tested;
 }
@@ -82,10 +82,8 @@ std::uint64_t joinEntry(const Neighbourhood<Scalar, kIsDense, kRows>& around, co
         const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(hits | kNoHit));
         const std::uint32_t k = bit / kWidth;
         const std::uint32_t hit = runs[k].first + bit % kWidth;
-        const Row row = around.row(entry, static_cast<int>(k % kRows));
         *next = {entry, hit};
-        const bool isHit =
-            hits != 0 && isInRow<kIsDense>(around.level, hit, row) && query.finds(hit);
+        const bool isHit = hits != 0 && query.finds(hit);
         next += isHit ? 1 : 0;
         hits &= hits - 1;
     };

@@ -87,16 +87,11 @@ struct BucketRange {
 template <bool kIsDense, class Scalar>
 BucketRange<kIsDense> bucketsOf(const Level<Scalar>& level, Row row, std::int32_t firstX,
                                 std::uint32_t length) {
-    const std::uint32_t first =
-        level.template rowBase<kIsDense>(row) + static_cast<std::uint32_t>(firstX);
-    if constexpr (kIsDense) {
-        return {first, first + length};
-    } else if (length >= level.bucketCount) {
+    if (!kIsDense && length >= level.bucketCount) {
         return {0, level.bucketCount};
-    } else {
-        const std::uint32_t wrapped = first & (level.bucketCount - 1);
-        return {wrapped, wrapped + length};
     }
+    const std::uint32_t first = level.template bucketOf<kIsDense>(firstX, row);
+    return {first, first + length};
 }
 
 // Whether the rows of a hashed level have more entries in their buckets, those of other rows and those
@@ -139,27 +134,18 @@ constexpr Row kRowsOfSpace[] = {{0, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
 constexpr Row kRowsOfLayer[] = {{0, 0}, {1, 0}};
 constexpr Row kRowsOfWall[] = {{0, 0}, {0, 1}};
 
-inline Row operator+(Row a, Row b) {
-    return {a.y + b.y, a.z + b.z};
-}
-
-/// The runs of the entries' neighbourhoods, one after the other.
+/// The runs of the entries' neighbourhoods, one after the other. Those of a hashed level do not share
+/// buckets, nor do two cells read each other's, as numberHashed() sees to: what overlaps is found once.
 template <class Scalar, bool kIsDense, int kRows>
 struct Neighbourhood {
     const Level<Scalar>& level;
-    const Row* steps;
-    std::uint32_t offsets[kRows];  // of buckets, where these are dense
+    std::uint32_t
+        offsets[kRows];  // of buckets, from an entry's to the first that is read; none is negative
 
-    Neighbourhood(const Level<Scalar>& itsLevel, const Row* itsSteps)
-        : level(itsLevel), steps(itsSteps) {
+    Neighbourhood(const Level<Scalar>& itsLevel, const Row* steps) : level(itsLevel) {
         for (int k = 0; k < kRows; ++k) {
-            offsets[k] = static_cast<std::uint32_t>(steps[k].y) * level.strideY +
-                         static_cast<std::uint32_t>(steps[k].z) * level.strideZ;
+            offsets[k] = static_cast<std::uint32_t>(level.offset(steps[k]) - 1);
         }
-    }
-
-    [[nodiscard]] Row row(std::uint32_t entry, int k) const {
-        return kIsDense ? Row{0, 0} : level.rowOfEntry[entry] + steps[k];
     }
 
     // The buckets of row k. Those of the entry's own row begin with the entry's.
@@ -168,15 +154,10 @@ struct Neighbourhood {
         if (k == 0) {
             return {own, own + 2};
         }
-        if constexpr (kIsDense) {
-            return {own + offsets[k] - 1, own + offsets[k] + 2};
-        } else {
-            const Row ownRow = level.rowOfEntry[entry];
-            const std::uint32_t before = (own - level.template rowBase<false>(ownRow) +
-                                          level.template rowBase<false>(ownRow + steps[k]) - 1) &
-                                         (level.bucketCount - 1);
-            return {before, before + 3};
-        }
+        // Of two laps, the one that is not negative.
+        const std::uint32_t before = own + offsets[k];
+        const std::uint32_t first = kIsDense ? before : lowest(before, before - level.bucketCount);
+        return {first, first + 3};
     }
 
     // Sets the runs; returns whether some of them wrap around.

@@ -70,7 +70,7 @@ private:
         const std::uint32_t* starts = view_.level.bucketStart;
         int foundCount = 0;
         for (int k = 0; k < count; ++k) {
-            const std::uint32_t base = view_.level.template rowBase<true>(batch.rows[k]);
+            const std::uint32_t base = view_.level.template bucketOf<true>(0, batch.rows[k]);
             const auto startOf = [starts, base](std::int32_t cell) {
                 return starts[base + static_cast<std::uint32_t>(cell)];
             };

@@ -72,6 +72,21 @@ TEST(AutomaticLevels, AreFlatAcrossATerrainAndNotInAFilledSpace) {
     EXPECT_EQ(space.cheapestLevels().flatAxes[0], 0);
 }
 
+// Along an axis that few piles share, all of them would be read for each.
+TEST(AutomaticLevels, AreNotFlatAcrossHighPilesThatLieFarApart) {
+    Random random(0x5eed0312);
+    SizeCensus census;
+    for (int pile = 0; pile < 8; ++pile) {
+        const Vector3<double> away = random.pointIn(-5000, 5000);
+        for (int i = 0; i < 1250; ++i) {
+            census.add(boxAround<double>(away + random.pointIn(0, 12.5), {0.5, 0.5, 0.5}));
+        }
+    }
+    const LevelSizes levels = census.cheapestLevels();
+    ASSERT_EQ(levels.count, 1);
+    EXPECT_EQ(levels.flatAxes[0], 0);
+}
+
 TEST(AutomaticLevels, ListAFewHugeBoxesAmongManySmallOnes) {
     Random random(0x5eed0302);
     SizeCensus census;

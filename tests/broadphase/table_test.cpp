@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -94,6 +95,58 @@ TYPED_TEST(TableTest, FindsEveryPairOnceInPlanesAndLines) {
             this->filled_.build(std::move(boxes), fixedLevels(1.5, 4));
             EXPECT_GT(this->filled_.expectEveryPairOnce(), 50U);
         }
+    }
+}
+
+// By which every pair is found once.
+TYPED_TEST(TableTest, AHashedCellAndThoseAroundItHaveABucketEach) {
+    const Vector3<double> extents[] = {{1e5, 1e5, 1e5}, {1e5, 1, 1e5},   {1e5, 1e5, 1},
+                                       {1, 1e5, 1e5},   {1, 1, 1e5},     {1e5, 1, 1},
+                                       {1, 1e5, 1},     {4, 4e4, 5e5},   {5e5, 2, 3e4},
+                                       {9e4, 7, 1e5},   {3e5, 300, 3e5}, {2e5, 3e5, 20}};
+    for (const Vector3<double>& extent : extents) {
+        for (const std::size_t count : {40U, 65U, 130U, 1000U, 3000U}) {
+            SCOPED_TRACE(testing::Message() << count << " in " << extent.transpose());
+            std::vector<Aabb<TypeParam>> boxes;
+            while (boxes.size() < count) {
+                const Vector3<double> at = this->random_.pointIn(0, 1).cwiseProduct(extent);
+                boxes.push_back(boxAround<TypeParam>(at, {0.4, 0.4, 0.4}));
+            }
+            this->filled_.build(std::move(boxes), fixedLevels(1, 4));
+            const Level<TypeParam>& level = this->filled_.table.levels()[1];
+            std::set<std::uint32_t> buckets;
+            std::size_t cells = 0;
+            const std::int32_t y = level.inverseCellSize[1] == 0 ? 0 : 1;
+            const std::int32_t z = level.inverseCellSize[2] == 0 ? 0 : 1;
+            for (std::int32_t i = -1; i <= 1; ++i) {
+                for (std::int32_t j = -y; j <= y; ++j) {
+                    for (std::int32_t k = -z; k <= z; ++k) {
+                        buckets.insert(
+                            level.bucket(level.low[0] + i, {level.low[1] + j, level.low[2] + k}));
+                        ++cells;
+                    }
+                }
+            }
+            EXPECT_EQ(level.kind, LevelKind::hashed);
+            EXPECT_EQ(buckets.size(), cells);
+            EXPECT_LT(*buckets.rbegin(), level.bucketCount);
+        }
+    }
+}
+
+// As far from each other as to share buckets, if they were numbered carelessly.
+TYPED_TEST(TableTest, PilesAtEqualDistancesAreReadNoMoreThanPilesAnywhere) {
+    for (const double distance : {33.0, 64.0, 66.0, 99.0, 100.0, 128.0, 400.0, 1000.0, 4096.0}) {
+        SCOPED_TRACE(distance);
+        std::vector<Aabb<TypeParam>> boxes;
+        for (int i = 0; i < 6400; ++i) {
+            const Vector3<double> pile(i / 400 % 16, 0, i / 40 % 10);
+            boxes.push_back(boxAround<TypeParam>(distance * pile + this->random_.pointIn(0, 4),
+                                                 {0.4, 0.4, 0.4}));
+        }
+        this->filled_.build(std::move(boxes), fixedLevels(1, 4));
+        static_cast<void>(this->filled_.joined());
+        EXPECT_LT(this->filled_.cost.boxesTested, 12U * 6400);
     }
 }
 

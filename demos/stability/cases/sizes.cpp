@@ -3,8 +3,8 @@
 // Sizes that differ by twelve orders of magnitude, and cells that were chosen to collide.
 
 #include <demos/stability/cases/cases.hpp>
+#include <demos/stability/one_bucket.hpp>
 
-#include <array>
 #include <cstdlib>
 
 namespace hashphase::demos {
@@ -148,33 +148,6 @@ constexpr auto oneLargeObject = [](auto& run) {
 
 // --- Collisions -----------------------------------------------------------------------------------
 
-// The step from a row of cells to the nearest one whose number, y * 0x9e3779b1 + z * 0x85ebca77 modulo
-// 2^32, is the same: our hash of rows, known to whoever means harm.
-constexpr std::uint32_t kHashY = 0x9e3779b1U;
-constexpr std::uint32_t kHashZ = 0x85ebca77U;
-
-// Modulo 2^32, by Newton's iteration.
-constexpr std::uint32_t inverseOf(std::uint32_t odd) {
-    std::uint32_t inverse = odd;
-    for (int i = 0; i < 5; ++i) {
-        inverse *= 2 - odd * inverse;
-    }
-    return inverse;
-}
-
-std::array<std::int32_t, 2> stepOfEqualRows() {
-    std::array<std::int32_t, 2> best{1 << 30, 0};
-    for (std::int32_t z = 1; z < (1 << 17); ++z) {
-        const auto y = static_cast<std::int32_t>(0U - static_cast<std::uint32_t>(z) * kHashZ *
-                                                          inverseOf(kHashY));
-        if (std::max(std::abs(static_cast<std::int64_t>(y)), std::int64_t{z}) <
-            std::max(std::abs(static_cast<std::int64_t>(best[0])), std::int64_t{best[1]})) {
-            best = {y, z};
-        }
-    }
-    return best;
-}
-
 // Two that touch at each of the places, and some that are beside them in the next cells.
 template <class Scalar>
 Boxes<Scalar> pairsAt(const std::vector<Vector3<float>>& places) {
@@ -190,78 +163,19 @@ Boxes<Scalar> pairsAt(const std::vector<Vector3<float>>& places) {
 
 // --- One bucket -----------------------------------------------------------------------------------
 
-constexpr std::int32_t kAttackers = 12'000;
-constexpr std::int32_t kBuckets = 32'768;  // for so many
-
-template <class Scalar>
-void addInCell(Boxes<Scalar>& boxes, double x, double y, double z) {
-    boxes.push_back(cubeAt<double>({x + 0.5, y + 0.5, z + 0.5}, 0.25).template cast<Scalar>());
-}
-
-/// In rows whose hash of 32 bits is one and the same, so near that numbers of single precision tell
-/// their cells apart.
-template <class Scalar>
-Boxes<Scalar> boxesInRowsOfOneHash() {
-    constexpr std::int32_t kMost = 1 << 22;
-    Boxes<Scalar> boxes;
-    for (std::int32_t y = -kMost; y < kMost && boxes.size() < kAttackers; ++y) {
-        const auto z = static_cast<std::int32_t>(0 - static_cast<std::uint32_t>(y) * kHashY *
-                                                         inverseOf(kHashZ));
-        if (std::abs(z) < kMost) {
-            addInCell(boxes, 7, y, z);
-        }
-    }
-    return boxes;
-}
-
-/// In rows of any hash, each as far along its row as makes up for it. Rows are counted from the median,
-/// which is 0, as half lie on a line of rows along each axis.
-template <class Scalar>
-Boxes<Scalar> boxesThatMakeUpForTheirRows() {
-    Boxes<Scalar> boxes;
-    for (std::int32_t i = 0; i < kAttackers; ++i) {
-        constexpr std::int32_t kHalf = kAttackers / 2;
-        const std::int32_t along = 4 * (i % kHalf - kHalf / 2);
-        const std::int32_t y = i < kHalf ? along : 0;
-        const std::int32_t z = i < kHalf ? 0 : along;
-        std::uint32_t hash =
-            static_cast<std::uint32_t>(y) * kHashY + static_cast<std::uint32_t>(z) * kHashZ;
-        hash ^= hash >> 16;
-        hash *= 0x7feb352dU;
-        hash ^= hash >> 15;
-        addInCell(boxes, static_cast<double>((0U - hash) % kBuckets), y, z);
-    }
-    return boxes;
-}
-
-/// In one row, farther apart than there are buckets.
-template <class Scalar>
-Boxes<Scalar> boxesInALongRow() {
-    Boxes<Scalar> boxes;
-    for (std::int32_t i = 0; i < kAttackers; ++i) {
-        addInCell(boxes, static_cast<double>(kBuckets) * (i - kAttackers / 2), 3, 5);
-    }
-    return boxes;
-}
-
 /// Though far apart, they are in one bucket: sorted there, so that pairs and queries cost little.
 template <class Scalar>
-void judgeOneBucket(CaseRun<Scalar>& run, Boxes<Scalar> boxes,
-                    std::uint64_t mostTestsInFittingCells) {
+void judgeOneBucket(CaseRun<Scalar>& run, const Boxes<Scalar>& boxes) {
     constexpr std::uint64_t kCrowd = 256;  // more than so many share a bucket: it is sorted
-    for (std::size_t i = 0; i < 300; ++i) {
-        const Aabb<Scalar> twin = boxes[i * 37];
-        boxes.push_back(twin);
-    }
     for (const double cellSize : {1.0, 0.0}) {
         PairScene<Scalar> scene(run, boxes, {.cellSize = cellSize});
         scene.judge();
-        run.expect(cellSize == 0 || 2 * scene.cost().grid.largestCell >= kAttackers,
+        run.expect(cellSize == 0 || 2 * scene.cost().grid.largestCell >= boxes.size(),
                    "the crowd is in one bucket");
         run.expect(scene.cost().boxesTested < 5 * kCrowd * boxes.size(), "a crowd is sorted");
         for (std::uint32_t i = 0; i < scene.size(); i += 97) {
             const QueryCost cost = scene.judgeQuery(BoxRegion<Scalar>{boxes[i]});
-            run.expect(cost.boxesTested <= (cellSize == 0 ? mostTestsInFittingCells : 3 * kCrowd),
+            run.expect(cost.boxesTested <= (cellSize == 0 ? 32 : 3 * kCrowd),
                        "a crowd is searched where a query is");
         }
     }
@@ -295,17 +209,20 @@ constexpr auto cellsThatCollide = [](auto& run) {
     const int side = run.quickOrFull(100, 400);
     std::vector<Point> equalRows;
     std::vector<Point> scattered;
-    const auto [stepY, stepZ] = stepOfEqualRows();
     Random random(run.seed);
-    for (int i = -side / 2; i < side / 2; ++i) {
-        const auto k = static_cast<float>(i);
+    const auto far = [&] {
+        return std::floor(1000 * static_cast<float>(side) * random.between(-1, 1));
+    };
+    for (int i = 0; i < side; ++i) {
+        const float y = far();
+        scattered.emplace_back(0, y, far());
+    }
+    // As many, and about as far apart.
+    const auto [stepY, stepZ] =
+        stepWithinBucket(fileInCellsOfOneMetre(pairsAt<Scalar>(scattered)).levels()[1]);
+    for (int i = 0; i < side; ++i) {
+        const auto k = static_cast<float>(i - side / 2);
         equalRows.emplace_back(0, k * static_cast<float>(stepY), k * static_cast<float>(stepZ));
-        // As far apart, but anywhere.
-        const auto far = [&](std::int32_t step) {
-            return std::floor(static_cast<float>(side) / 2 * static_cast<float>(std::abs(step)) *
-                              random.between(-1, 1));
-        };
-        scattered.emplace_back(0, far(stepY), far(stepZ));
     }
     PairScene<Scalar> adversary(run, pairsAt<Scalar>(equalRows), {.cellSize = 1});
     PairScene<Scalar> harmless(run, pairsAt<Scalar>(scattered), {.cellSize = 1});
@@ -327,9 +244,9 @@ constexpr auto cellsThatCollide = [](auto& run) {
     }
     run.addCost(testsOfMove(adversary) / testsOfMove(harmless), 3);
     run.note("Cost: boxes tested for each object and pair, by those of rows that do not collide.");
-    judgeOneBucket(run, boxesInRowsOfOneHash<Scalar>(), 32);
-    judgeOneBucket(run, boxesThatMakeUpForTheirRows<Scalar>(), 128);
-    judgeOneBucket(run, boxesInALongRow<Scalar>(), 32);
+    for (const CrowdPlace place : {CrowdPlace::anywhere, CrowdPlace::longRows}) {
+        judgeOneBucket(run, crowdInOneBucket<Scalar>(place).boxes);
+    }
     judgeLongRegions(run);
 };
 
