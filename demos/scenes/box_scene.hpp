@@ -28,6 +28,11 @@ struct CollisionFilter {
 /// The filter of level geometry: pairs with everything but its like.
 inline constexpr CollisionFilter kStaticFilter{2, ~2};
 
+/// True of level geometry.
+[[nodiscard]] inline bool isStatic(CollisionFilter filter) noexcept {
+    return (filter.group & kStaticFilter.group) != 0;
+}
+
 /// Bullet's default rule: each one's mask accepts the other's group.
 [[nodiscard]] inline bool mayPair(CollisionFilter a, CollisionFilter b) noexcept {
     return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;

@@ -50,17 +50,6 @@ auto always(const Aabb<float>& room) {
     return [room](std::size_t /*number*/, Random& /*random*/) { return room; };
 }
 
-// Of those that rest, each `period`-th becomes static.
-BrownianBoxes withStatics(BrownianBoxes boxes, std::size_t period) {
-    boxes.filters.resize(boxes.bodies.size());
-    for (std::size_t i = 0; i < boxes.bodies.size(); i += period) {
-        if (boxes.bodies[i].step == 0) {
-            boxes.filters[i] = kStaticFilter;
-        }
-    }
-    return boxes;
-}
-
 }  // namespace
 
 BrownianScene::BrownianScene(BrownianBoxes boxes, std::uint64_t seed)
@@ -88,6 +77,16 @@ void BrownianScene::advance() {
         body.centre = body.centre.cwiseMin(body.roomForCentre.max());
         boxes_[i] = {body.centre - body.halfEdges, body.centre + body.halfEdges};
     }
+}
+
+BrownianBoxes withStatics(BrownianBoxes boxes, std::size_t period) {
+    boxes.filters.resize(boxes.bodies.size());
+    for (std::size_t i = 0; i < boxes.bodies.size(); i += period) {
+        if (boxes.bodies[i].step == 0) {
+            boxes.filters[i] = kStaticFilter;
+        }
+    }
+    return boxes;
 }
 
 BrownianBoxes uniformBoxes(std::size_t objects, std::uint64_t seed) {

@@ -34,6 +34,9 @@ private:
     Aabb<float> bounds_;
 };
 
+/// Of the boxes that rest, each `period`-th becomes static: it pairs with those only that are not.
+[[nodiscard]] BrownianBoxes withStatics(BrownianBoxes boxes, std::size_t period);
+
 /// Edges of 0.5-1.5 m in a cube just so large that a box overlaps about two others.
 [[nodiscard]] BrownianBoxes uniformBoxes(std::size_t objects, std::uint64_t seed);
 

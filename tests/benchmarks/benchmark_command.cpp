@@ -185,6 +185,11 @@ int framesOf(const Case& toRun, const BenchmarkReport& report) {
     return needed != 0 ? needed : report.settings.framesOf(toRun.objects);
 }
 
+int warmUpFramesOf(const Case& toRun, const BenchmarkReport& report) {
+    const int needed = toRun.benchmark->warmUpFrames;
+    return needed != 0 && !report.options.quick ? needed : report.settings.warmUpFrames;
+}
+
 // What a frame of the case roughly costs, for foretelling how long all will take.
 std::size_t weightOf(const Case& toRun) {
     return toRun.objects * toRun.contestants.size() + 1;
@@ -196,7 +201,7 @@ void runCases(const std::vector<Case>& cases, BenchmarkReport& report, demos::Co
         return limit && watch.milliseconds() > *limit * 1000;
     };
     const auto allFramesOf = [&report](const Case& toRun) {
-        return static_cast<std::size_t>(framesOf(toRun, report) + report.settings.warmUpFrames);
+        return static_cast<std::size_t>(framesOf(toRun, report) + warmUpFramesOf(toRun, report));
     };
     std::size_t total = 0;
     for (const Case& toRun : cases) {
@@ -209,6 +214,7 @@ void runCases(const std::vector<Case>& cases, BenchmarkReport& report, demos::Co
         const std::size_t frames = allFramesOf(cases[i]);
         MeasurementSettings settings = report.settings;
         settings.frames = framesOf(cases[i], report);
+        settings.warmUpFrames = warmUpFramesOf(cases[i], report);
         settings.isTimeUp = isTimeUp;
         settings.tellProgress = [&](int framesDone) {
             progress.update(done + weightOf(cases[i]) * static_cast<std::size_t>(framesDone),

@@ -362,7 +362,7 @@ TEST(Benchmarks, TakeSizesSeedFramesAndContestants) {
 
 // Where others may be faster than we are.
 TEST(Benchmarks, MeasureEverySceneAtAThousandAndAtThreeThousandObjects) {
-    const std::set<std::string> withSizesOfTheirOwn{"tiny", "threads", "sizes-one",
+    const std::set<std::string> withSizesOfTheirOwn{"tiny", "threads", "large-world", "sizes-one",
                                                     "sizes-trillion"};
     for (const Benchmark& benchmark : pairBenchmarks()) {
         if (withSizesOfTheirOwn.count(benchmark.name) == 0) {

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -49,14 +50,24 @@ Benchmark pairsIn(const char* name, std::string_view scene,
 // A world in which nothing moves, and what is handed in nevertheless.
 Benchmark stillPairs(const char* name, const char* description, PairFrame what) {
     const MakeScene makeScene = brownian([](std::size_t objects, std::uint64_t seed) {
-        demos::BrownianBoxes boxes = demos::scatter({.movingShare = 0}, objects, seed);
-        boxes.filters.resize(objects);
-        for (std::size_t i = 0; i < objects; i += 2) {
-            boxes.filters[i] = demos::kStaticFilter;
-        }
-        return boxes;
+        return demos::withStatics(demos::scatter({.movingShare = 0}, objects, seed), 2);
     });
     return pairs(name, "pairs", description, {1'000, 3'000, 100'000}, makeScene, what);
+}
+
+// About Box3D's large world: up to a hundred boxes roam over a wide ground of static ones.
+MakeScene largeWorld() {
+    return brownian([](std::size_t objects, std::uint64_t seed) {
+        constexpr std::size_t kMostMovers = 100;
+        constexpr float kStep = 0.2F;  // [m] a frame and axis
+        demos::BrownianBoxes boxes =
+            demos::scatter({.placement = demos::Placement::plain, .movingShare = 0}, objects, seed);
+        const std::size_t movers = std::min(kMostMovers, (objects + 9) / 10);
+        for (demos::BrownianBoxes::Body& body : std::span(boxes.bodies).first(movers)) {
+            body.step = kStep;
+        }
+        return demos::withStatics(std::move(boxes), 1);
+    });
 }
 
 Benchmark scatteredPairs(std::string name, const char* group, const demos::ScatterPlan& plan,
@@ -88,11 +99,11 @@ std::vector<Benchmark> randomBenchmarks(std::uint64_t seed) {
 // --- Objects that come and go --------------------------------------------------------------------
 
 std::vector<Benchmark> populationBenchmarks() {
-    const auto population = [](const char* name, const char* description, PairFrame what) {
+    const auto population = [](const char* name, const char* description, PairFrame what,
+                               Sizes sizes, MakeScene makeScene = sceneNamed("uniform")) {
         const bool areRemoved = what != PairFrame::create;
-        Benchmark benchmark = pairs(name, "population", description,
-                                    areRemoved ? Sizes{50'000} : Sizes{1'000, 3'000, 10'000},
-                                    sceneNamed("uniform"), what);
+        Benchmark benchmark =
+            pairs(name, "population", description, std::move(sizes), std::move(makeScene), what);
         benchmark.operation = areRemoved ? "removal" : "object";
         benchmark.admits = [what, areRemoved](const ContestantKind& kind, std::size_t objects) {
             // The grid alone notes a removal and deals with it when it is asked for pairs.
@@ -102,11 +113,20 @@ std::vector<Benchmark> populationBenchmarks() {
         };
         return benchmark;
     };
-    return {population("removal", "1,000 of uniform boxes are destroyed", PairFrame::remove),
-            population("removal-and-pairs", "the same, until the pairs are complete",
-                       PairFrame::removeAndFind),
-            population("creation", "uniform boxes are created, until the pairs are complete",
-                       PairFrame::create)};
+    Benchmark ofStatics = population(
+        "creation-static", "the boxes of large-world are created, until the pairs are complete",
+        PairFrame::create, {2'000'000}, largeWorld());
+    ofStatics.largest = 2'000'000;
+    ofStatics.frames = 5;  // with btDbvtBroadphase each takes a quarter of a minute
+    ofStatics.warmUpFrames = 2;
+    ofStatics.onRequest = true;
+    return {
+        population("removal", "1,000 of uniform boxes are destroyed", PairFrame::remove, {50'000}),
+        population("removal-and-pairs", "the same, until the pairs are complete",
+                   PairFrame::removeAndFind, {50'000}),
+        population("creation", "uniform boxes are created, until the pairs are complete",
+                   PairFrame::create, {1'000, 3'000, 10'000}),
+        std::move(ofStatics)};
 }
 
 // --- Cell sizes ----------------------------------------------------------------------------------
@@ -265,6 +285,16 @@ std::vector<Benchmark> pairBenchmarks() {
         return kind.name == kBaseline || kind.name == "hash" || kind.onThreads;
     };
     threads.onRequest = true;
+    Benchmark large = pairs("large-world", "pairs",
+                            "a ground of static boxes, and up to 100 that roam: they alone are set",
+                            {1'000'000}, largeWorld(), PairFrame::setMovers);
+    large.operation = "mover";
+    // For a hundred frames btDbvtBroadphase improves the tree of what has come to rest.
+    large.warmUpFrames = 120;
+    large.onRequest = true;
+    large.admits = [](const ContestantKind& kind, std::size_t objects) {
+        return takesPartInFrames(kind, objects) && objects <= kind.fillsUpTo && kind.changes;
+    };
     Benchmark trillion = pairsOfSizes("sizes-trillion", demos::SizeLaw::logUniform, 0x1p40F);
     trillion.admits = [](const ContestantKind& kind, std::size_t objects) {
         // ODE's hash space ends the program where its cells have too large numbers.
@@ -290,6 +320,7 @@ std::vector<Benchmark> pairBenchmarks() {
             stillPairs("sleeping", "uniform boxes, half static, half asleep: none is set",
                        PairFrame::setNothing),
             std::move(threads),
+            std::move(large),
             pairsOfSizes("sizes-one", demos::SizeLaw::equal, demos::ScatterPlan().sizeRatio),
             std::move(trillion)};
 }

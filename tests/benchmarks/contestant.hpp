@@ -70,9 +70,10 @@ public:
     /// Replaces `pairs` by what was found, in any order; what was reported twice is listed twice.
     virtual void listPairs(std::vector<demos::PairKey>& pairs) = 0;
 
-    /// Objects come and go, where the kind `changes`.
+    /// Objects come and go, and some alone are set, where the kind `changes`.
     virtual void add(std::span<const std::uint32_t> /*objects*/, const FrameBoxes& /*frame*/) {}
     virtual void remove(std::span<const std::uint32_t> /*objects*/) {}
+    virtual void set(std::span<const std::uint32_t> /*objects*/, const FrameBoxes& /*frame*/) {}
 
     [[nodiscard]] virtual std::optional<OwnBytes> ownBytes() const { return std::nullopt; }
 };
@@ -85,7 +86,7 @@ struct ContestantKind {
     std::string description = {};        // for the list of contestants
     std::string package = "this build";  // where it comes from, with its version
     bool ours = false;                   // a wrong answer of it fails the run
-    bool changes = false;                // takes in and removes objects at any time
+    bool changes = false;                // takes in, sets and removes single objects at any time
     bool inBatches = false;  // ours, when they come and go in batches: measured where they do
     bool onThreads = false;  // measured on the wall clock, on request
     std::size_t upTo = kAnyNumber;       // objects; else too slow

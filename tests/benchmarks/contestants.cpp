@@ -58,6 +58,12 @@ public:
         }
     }
 
+    void set(std::span<const std::uint32_t> objects, const FrameBoxes& frame) override {
+        for (const std::uint32_t object : objects) {
+            filled_.set(object, frame.bulletBoxes[object]);
+        }
+    }
+
     [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
         const auto* own = dynamic_cast<const SpatialHashBroadphase*>(&filled_.broadphase());
         if (own == nullptr) {

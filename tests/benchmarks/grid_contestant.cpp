@@ -46,13 +46,7 @@ public:
         }
     }
 
-    void findPairs() override {
-        const auto mayPair = [this](ProxyId a, ProxyId b) {
-            return filters_.empty() ||
-                   demos::mayPair(filters_[objects_[a.index]], filters_[objects_[b.index]]);
-        };
-        changes_ = pairs_.update(mayPair, plan_.parallelFor);
-    }
+    void findPairs() override { changes_ = pairs_.update(acceptAllPairs, plan_.parallelFor); }
 
     // What was a pair is one no more, and what was none is one.
     void afterFrame() override {
@@ -82,6 +76,11 @@ public:
             grid_.remove(ids_[object]);
         }
     }
+    void set(std::span<const std::uint32_t> objects, const FrameBoxes& frame) override {
+        for (const std::uint32_t object : objects) {
+            grid_.move(ids_[object], place(frame.boxes[object]));
+        }
+    }
 
     [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
         const std::size_t forSweeps = sweeps_ == nullptr ? 0 : sweeps_->memoryBytes();
@@ -100,8 +99,10 @@ private:
     }
 
     void addOne(std::uint32_t object, const FrameBoxes& frame) {
-        filters_ = frame.filters;
-        ids_[object] = grid_.add(place(frame.boxes[object]));
+        const demos::CollisionFilter filter = frame.filterOf(object);
+        ids_[object] = grid_.add(
+            place(frame.boxes[object]), isStatic(filter) ? Mobility::resting : Mobility::mobile,
+            {static_cast<std::uint32_t>(filter.group), static_cast<std::uint32_t>(filter.mask)});
         const std::uint32_t slot = ids_[object].index;
         objects_.resize(std::max<std::size_t>(objects_.size(), slot + std::size_t{1}));
         objects_[slot] = object;
@@ -124,7 +125,6 @@ private:
     Pairs<Scalar> pairs_{grid_, sweeps_.get()};
     std::vector<ProxyId> ids_;            // by object
     std::vector<std::uint32_t> objects_;  // by slot
-    std::span<const demos::CollisionFilter> filters_;
     PairChanges changes_;
     std::vector<PairKey> known_;
     std::vector<PairKey> next_;

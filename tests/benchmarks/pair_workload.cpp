@@ -2,6 +2,7 @@
 #include <tests/benchmarks/pair_workload.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -33,6 +34,8 @@ public:
         const PairFrame what = workload_.what();
         if (what == PairFrame::setAll) {
             contestant_->setAll(frame_);
+        } else if (what == PairFrame::setMovers) {
+            contestant_->set(workload_.movers(), frame_);
         } else if (what == PairFrame::create) {
             contestant_->fill(frame_);
         } else if (removes()) {
@@ -82,6 +85,10 @@ PairWorkload::PairWorkload(std::unique_ptr<demos::BoxScene> scene, PairFrame wha
     if (what == PairFrame::remove || what == PairFrame::removeAndFind) {
         constexpr std::size_t kMostRemovals = 1000;
         removals_ = std::min(kMostRemovals, (scene_.size() + 1) / 2);
+    } else if (what == PairFrame::setMovers) {
+        std::copy_if(
+            order_.begin(), order_.end(), std::back_inserter(movers_),
+            [&](std::uint32_t object) { return !isStatic(scene_.frame().filterOf(object)); });
     }
 }
 
@@ -93,7 +100,7 @@ void PairWorkload::beginFrame() {
     if (moves_) {
         scene_.advance();
     }
-    moves_ = what_ == PairFrame::setAll || what_ == PairFrame::create;
+    moves_ = removals_ == 0 && what_ != PairFrame::setNothing;
     for (std::size_t i = 0; i < removals_; ++i) {
         const float share = random_.unit();
         const auto left = static_cast<float>(order_.size() - i);

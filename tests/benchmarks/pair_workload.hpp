@@ -12,6 +12,7 @@ namespace hashphase::benchmarks {
 /// What is done and timed in a frame.
 enum class PairFrame {
     setAll,      // all boxes are set, moved or not, as Bullet does, and the pairs found
+    setMovers,   // those that are not static alone are set, and the pairs found
     setNothing,  // none after the first time: everything is static or asleep; pairs are found
     remove,      // 1,000 objects are removed, others in each frame, and put back untimed: the calls
     removeAndFind,  // the same, and pairs are found
@@ -27,10 +28,12 @@ public:
     void listExactAnswers(std::vector<Answer>& answers) override;
     [[nodiscard]] std::size_t objects() const override { return scene_.size(); }
     [[nodiscard]] std::size_t operations() const override {
-        return removals_ > 0 ? removals_ : objects();
+        return what_ == PairFrame::setMovers ? movers_.size()
+               : removals_ > 0               ? removals_
+                                             : objects();
     }
     [[nodiscard]] bool watchesHeap() const override {
-        return what_ == PairFrame::setAll || what_ == PairFrame::setNothing;
+        return removals_ == 0 && what_ != PairFrame::create;
     }
 
     /// What is handed to contestants of the kind.
@@ -40,6 +43,7 @@ public:
 
     [[nodiscard]] const SceneBoxes& scene() const noexcept { return scene_; }
     [[nodiscard]] PairFrame what() const noexcept { return what_; }
+    [[nodiscard]] std::span<const std::uint32_t> movers() const { return movers_; }
     [[nodiscard]] std::span<const std::uint32_t> removed() const {
         return std::span(order_).first(removals_);
     }
@@ -48,7 +52,8 @@ private:
     SceneBoxes scene_;
     PairFrame what_;
     demos::Random random_;
-    std::vector<std::uint32_t> order_;  // those to be removed come first
+    std::vector<std::uint32_t> movers_;  // where they alone are set
+    std::vector<std::uint32_t> order_;   // those to be removed come first
     std::size_t removals_ = 0;
     bool moves_;
 };

@@ -138,6 +138,9 @@ struct Benchmark {
     /// Measured, unless asked otherwise; 0: as many as of others of that size.
     int frames = 0;
 
+    /// Before those, where ten are too few or take too long; 0: as many as of others.
+    int warmUpFrames = 0;
+
     /// Only measured when it is asked for by name.
     bool onRequest = false;
 
