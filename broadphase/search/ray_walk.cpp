@@ -97,7 +97,7 @@ public:
             part_.bounds[axis + 3] = static_cast<Scalar>(std::max(one, other) + high_[axis]);
         }
     }
-    [[nodiscard]] RayPart<Scalar>& part() noexcept { return part_; }
+    [[nodiscard]] RayPart<Scalar>& part() noexcept { return part_{}; }
 
 private:
     using Limits = std::numeric_limits<Scalar>;

@@ -154,9 +154,12 @@ void Store<Scalar>::fileResting(ParallelFor parallelFor) {
     if (haveSlack) {
         growBoxes();
     }
-    tables.resting.file(frame.proxyIndices, haveSlack ? settling->grown : frame.boxes, fixedSizes(),
-                        parallelFor, proxies.groupsOfAll());
+    tables.resting.file(frame.proxyIndices, frame.boxes, fixedSizes(), parallelFor,
+                        proxies.groupsOfAll());
     if (haveSlack) {
+        for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
+            frame.boxes[i] = padded(proxies.records[frame.proxyIndices[i]].box);
+        }
         tables.resting.settle(frame.boxes);
     }
     tables.idleUpdates = 0;

@@ -72,6 +72,11 @@ void Store<Scalar>::releaseAfterPeak() noexcept {
     if (peaks.isPast(std::max(listedCount(), proxies.reservedCount), room)) {
         releaseMemory();
     }
+    if (mobilePeaks.isPast(proxies.mobile.size(), frame.now.capacity())) {
+        freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
+        tables.mobile.releaseUnusedMemory();
+        tables.resting.releaseUnusedMemory();
+    }
 }
 
 template <class Scalar>

@@ -37,13 +37,11 @@ struct Settling {
     std::uint32_t calmCount = 0;                // of those that may settle with slack
     std::vector<std::uint32_t> changedEntries;  // of the resting table, unless they are many
     bool areManyChanged = false;
-    std::uint32_t stayedCount = 0;         // Table::order() of what rested before, below this
-    std::vector<PaddedBox<Scalar>> grown;  // scratch: by which the resting ones are filed
+    std::uint32_t stayedCount = 0;  // Table::order() of what rested before, below this
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + tremors.capacity() * sizeof(tremors[0]) +
-               changedEntries.capacity() * sizeof(changedEntries[0]) +
-               grown.capacity() * sizeof(grown[0]);
+               changedEntries.capacity() * sizeof(changedEntries[0]);
     }
 };
 

@@ -138,14 +138,12 @@ Scalar Store<Scalar>::slackOf(std::uint32_t proxyIndex) const noexcept {
 // By as much as they may move.
 template <class Scalar>
 void Store<Scalar>::growBoxes() {
-    ensureCapacity(settling->grown, frame.boxes.size());
-    settling->grown = frame.boxes;
     settling->slackCount = 0;
     for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
         const std::uint32_t proxyIndex = frame.proxyIndices[i];
         if (proxies.records[proxyIndex].hasSlack) {
             ++settling->slackCount;
-            settling->grown[i] = grownBy(frame.boxes[i], slackOf(proxyIndex));
+            frame.boxes[i] = grownBy(frame.boxes[i], slackOf(proxyIndex));
         }
     }
 }

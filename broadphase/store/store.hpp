@@ -71,6 +71,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     std::uint64_t shiftCount = 0;              // of the origin
     Motions<Scalar>* firstMotions = nullptr;
     PeakWatch peaks;
+    PeakWatch mobilePeaks;  // of those that have come to rest
     bool hasPairs = false;
     bool maySettleWithSlack = true;
     std::uint8_t observedEach = kOftenObserved;  // update, as a binary logarithm

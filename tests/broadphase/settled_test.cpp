@@ -194,5 +194,29 @@ TYPED_TEST(Settled, HoldInAGridWithoutPairs) {
     EXPECT_GT(cost.resting, 180U);
 }
 
+// What they needed while they were mobile is given back.
+TYPED_TEST(Settled, TakeLessMemoryAfterALongWhile) {
+    constexpr std::size_t kCount = 3000;
+    Population<TypeParam> world;
+    world.addMany(kCount, spreadScene<TypeParam>("trembling", 1, 0).draw);
+    std::vector<Aabb<TypeParam>> home;
+    for (const Placed<TypeParam>& proxy : world.proxies) {
+        home.push_back(proxy.box);
+    }
+    const auto play = [&](int updates) {
+        for (int update = 0; update < updates; ++update) {
+            for (std::size_t i = 0; i < kCount; ++i) {
+                world.moveTo(i, shifted(world.random, home[i], 0.01));
+            }
+            world.grid.update();
+        }
+        return world.grid.memoryBytes();
+    };
+    const std::size_t soon = play(40);
+    const std::size_t late = play(600);
+    EXPECT_LT(late + kCount * 2 * sizeof(detail::PaddedBox<TypeParam>), soon);
+    EXPECT_EQ(world.grid.validate(), "");
+}
+
 }  // namespace
 }  // namespace hashphase::test
