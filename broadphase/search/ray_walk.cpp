@@ -97,7 +97,7 @@ public:
             part_.bounds[axis + 3] = static_cast<Scalar>(std::max(one, other) + high_[axis]);
         }
     }
-    [[nodiscard]] RayPart<Scalar>& part() noexcept { return part_{}; }
+    [[nodiscard]] RayPart<Scalar>& part() noexcept { return part_; }
 
 private:
     using Limits = std::numeric_limits<Scalar>;
@@ -111,7 +111,7 @@ private:
     std::array<double, 3> high_;
     bool isExpressible_;
     bool isAimed_ = false;
-    RayPart<Scalar> part_;
+    RayPart<Scalar> part_{};
 };
 
 /// A walk through the levels of a table.
