@@ -6,6 +6,7 @@
 #include <broadphase/core/prefetch.hpp>
 #include <broadphase/move_batch.hpp>
 #include <integration/bullet/conversions.hpp>
+#include <integration/bullet/detail/lone_moves.inl>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <algorithm>

@@ -6,6 +6,7 @@
 #include <broadphase/core/prefetch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/body_motion.hpp>
+#include <integration/bullet/detail/lone_moves.inl>
 #include <integration/bullet/pair_cache.hpp>
 
 #include <LinearMath/btGeometryUtil.h>
@@ -171,30 +172,6 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     }
     if (!seen_.empty()) {
         noteSeen(*own, true);
-    }
-}
-
-void SpatialHashBroadphase::setAnyAabb(Proxy& proxy, const btVector3& aabbMin,
-                                       const btVector3& aabbMax, btDispatcher* dispatcher) {
-    const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
-    const Aabb<btScalar> before = toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
-    const bool isSame = isSameBits(before, box);
-    const bool jumps = !isSame && ghostCount() > 0 && !overlaps(before, box);
-    // A body that flies back may have the same box as when it came.
-    if (!isSame || sweeps_ != nullptr) {
-        proxy.m_aabbMin = aabbMin;
-        proxy.m_aabbMax = aabbMax;
-        move(proxy, box);
-        changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
-    }
-    const bool isRegrouped = !areGroupsKnown(proxy) && noteGroups(proxy);
-    if (!seen_.empty()) {
-        noteSeen(proxy, true);
-    }
-    if ((!isSame || isRegrouped) && isEager(proxy, dispatcher)) {
-        findPairsNow(proxy, dispatcher);
-    } else if (jumps) {
-        findGhostPairsNow(proxy, dispatcher);
     }
 }
 

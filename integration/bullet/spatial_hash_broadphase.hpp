@@ -33,13 +33,11 @@
 // Misuse    Proxies that are not alive, proxies of other broadphases, spans of different lengths in a
 //           batch, and rays without a callback are asserted.
 
-#include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/group_kinds.hpp>
 #include <broadphase/core/stable_array.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>
-#include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/cache_watch.hpp>
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/pair_cache.hpp>
@@ -380,28 +378,11 @@ private:
     void catchUp(btDispatcher* dispatcher);
     void putBackWhatWasTakenOut(btDispatcher* dispatcher);
     void askIfMoreWasTakenOut(btDispatcher* dispatcher);
-    // Mostly they are what they were: then this is but a comparison.
-    [[nodiscard]] bool areGroupsKnown(const Proxy& proxy) const noexcept {
-        return !groupsDecide_ || (proxy.kind != detail::GroupKinds::kOther &&
-                                  groupKinds_[proxy.kind] == groupsOf(proxy));
-    }
-    [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher) {
-        return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
-               (proxy.client != Client::other && mayHaveGhosts() && isGhost(proxy, dispatcher));
-    }
-    [[nodiscard]] bool mayBeEager(const Proxy& proxy, const btDispatcher* dispatcher) const {
-        return (proxy.m_collisionFilterGroup & config_.eagerGroups) != 0 ||
-               (proxy.client != Client::other && mayHaveGhosts() &&
-                (proxy.client == Client::ghost || canClientBeLookedAt(proxy, dispatcher)));
-    }
-    // Bullet, too, takes a client for a btCollisionObject when it tells ghosts, or a dispatcher, of a pair:
-    // what can have none may be anything. What a client is never changes.
+    [[nodiscard]] bool areGroupsKnown(const Proxy& proxy) const noexcept;
+    [[nodiscard]] bool isEager(Proxy& proxy, const btDispatcher* dispatcher);
+    [[nodiscard]] bool mayBeEager(const Proxy& proxy, const btDispatcher* dispatcher) const;
     [[nodiscard]] static bool canClientBeLookedAt(const Proxy& proxy,
-                                                  const btDispatcher* dispatcher) noexcept {
-        const bool mayPair = proxy.m_collisionFilterGroup != 0 && proxy.m_collisionFilterMask != 0;
-        return proxy.client == Client::unknown && dispatcher != nullptr && mayPair &&
-               proxy.m_clientObject != nullptr;
-    }
+                                                  const btDispatcher* dispatcher) noexcept;
     [[nodiscard]] bool mayHaveGhosts() const noexcept {
         return config_.eagerGhosts &&
                (watch_.cache == nullptr || watch_.cache->getInternalGhostPairCallback() != nullptr);
@@ -410,19 +391,13 @@ private:
     [[nodiscard]] std::vector<ProxyId> ghostsAt(const Proxy& proxy) const;
     void findPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
     void findGhostPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
-    // setAabb() where it may do more than move the box.
+    // setAabb() where it may do more.
     void setAnyAabb(Proxy& proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                     btDispatcher* dispatcher);
-    // Whether a move there finds no pairs at once.
+    // Whether a move finds no pairs at once: detail/lone_moves.inl.
     [[nodiscard]] bool movesAlone(const Proxy& proxy, const btVector3& aabbMin,
-                                  const btVector3& aabbMax, const btDispatcher* dispatcher) const {
-        return !mayBeEager(proxy, dispatcher) &&
-               (ghostCount() == 0 ||
-                overlaps(toAabb(proxy.m_aabbMin, proxy.m_aabbMax), toAabb(aabbMin, aabbMax)));
-    }
-    [[nodiscard]] std::size_t ghostCount() const noexcept {
-        return ghosts_ != nullptr ? ghosts_->size() : 0;
-    }
+                                  const btVector3& aabbMax, const btDispatcher* dispatcher) const;
+    [[nodiscard]] std::size_t ghostCount() const noexcept;
     void move(const Proxy& proxy, const Aabb<btScalar>& box);
     void moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box);
     [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;

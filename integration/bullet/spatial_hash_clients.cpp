@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Zlib
 
-// Which of the objects behind the proxies are ghosts, and where they are.
+// Which of the objects behind the proxies are ghosts, where they are, and what a box that is set may do there.
 
+#include <integration/bullet/conversions.hpp>
+#include <integration/bullet/detail/lone_moves.inl>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <broadphase/collectors.hpp>
@@ -52,6 +54,32 @@ std::vector<ProxyId> SpatialHashBroadphase::ghostsAt(const Proxy& proxy) const {
         }
     }
     return found;
+}
+
+// --- A box where more than it may change ----------------------------------------------------------
+
+void SpatialHashBroadphase::setAnyAabb(Proxy& proxy, const btVector3& aabbMin,
+                                       const btVector3& aabbMax, btDispatcher* dispatcher) {
+    const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
+    const Aabb<btScalar> before = toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
+    const bool isSame = isSameBits(before, box);
+    const bool jumps = !isSame && ghostCount() > 0 && !overlaps(before, box);
+    // A body that flies back may have the same box as when it came.
+    if (!isSame || sweeps_ != nullptr) {
+        proxy.m_aabbMin = aabbMin;
+        proxy.m_aabbMax = aabbMax;
+        move(proxy, box);
+        changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
+    }
+    const bool isRegrouped = !areGroupsKnown(proxy) && noteGroups(proxy);
+    if (!seen_.empty()) {
+        noteSeen(proxy, true);
+    }
+    if ((!isSame || isRegrouped) && isEager(proxy, dispatcher)) {
+        findPairsNow(proxy, dispatcher);
+    } else if (jumps) {
+        findGhostPairsNow(proxy, dispatcher);
+    }
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
