@@ -270,8 +270,9 @@ void LevelLayout<Scalar>::layOut(std::span<const PaddedBox<Scalar>> boxes,
     for (const auto& [level, reach] : candidatesFor(sizes_, origin_, boxes)) {
         Level<Scalar>& dense = levels.emplace_back(level);
         layOutDense(dense, reach);
-        layOutHashed(levels.emplace_back(level), reach,
-                     dense.isEmpty() ? reach.count : reach.count / kBoxesPerStray, boxes);
+        const std::uint32_t hashedCount =
+            dense.isEmpty() ? reach.count : reach.count / kBoxesPerStray;
+        layOutHashed(levels.emplace_back(level), reach, hashedCount, boxes);
     }
     levels.emplace_back();
     std::uint32_t firstBucket = 0;
