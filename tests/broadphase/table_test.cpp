@@ -266,5 +266,19 @@ TYPED_TEST(TableTest, ChoosesCellSizesAnewAtOnceWhereBoxesHaveOutgrownThem) {
     }
 }
 
+// They are too few to be strays, and yet every search would read all of them.
+TYPED_TEST(TableTest, ChoosesCellSizesAnewWhereAFewBoxesHaveOutgrownThem) {
+    const typename TestFixture::Boxes small = this->draw(3000, 0, 16, 0.5);
+    this->filled_.build(typename TestFixture::Boxes(small));
+    typename TestFixture::Boxes some = small;
+    for (std::size_t i = 0; i < 90; ++i) {
+        some[33 * i].min().array() -= TypeParam(0.1);
+        some[33 * i].max().array() += TypeParam(0.1);
+    }
+    this->filled_.build(std::move(some));
+    EXPECT_EQ(this->filled_.table.levels().back().count(), 0U) << "are listed";
+    this->filled_.expectEveryPairOnce(30);
+}
+
 }  // namespace
 }  // namespace hashphase::detail
