@@ -56,9 +56,8 @@ struct Level {
     const std::uint32_t* bucketOfEntry = nullptr;         // of all entries, counted over all levels
     const std::uint32_t* proxyIndices = nullptr;          // of all entries
     const SortedBucket<Scalar>* sortedBuckets = nullptr;  // the level's own, in ascending order
-    // The min corners by which entries are filed, so many numbers apart: buckets are sorted by them.
-    const Scalar* sortKeys[3] = {};
-    std::uint32_t sortStride = 1;
+    // The min corners by which entries are filed: buckets are sorted by them.
+    const Scalar* filedLow[3] = {};
 
     [[nodiscard, gnu::always_inline]] bool isDense() const noexcept {
         return kind == LevelKind::dense;

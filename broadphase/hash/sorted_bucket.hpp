@@ -29,17 +29,6 @@ struct SortedBucket {
     bool haveSameGroups;
 };
 
-/// The min corners of entries along an axis, as they are filed, in an array of them or of larger parts.
-template <class Scalar>
-struct SortKeys {
-    const Scalar* first;
-    std::uint32_t stride;
-
-    [[nodiscard, gnu::always_inline]] Scalar operator[](std::uint32_t entry) const noexcept {
-        return first[std::size_t{entry} * stride];
-    }
-};
-
 // Of its entries first to last, of which none is long, only some can overlap a box that extends from
 // `low` to `high` along the axis. Erased entries may have a key of NaN, and a bound may be NaN: there, as
 // with every rounding, too many entries are left rather than too few.
@@ -47,7 +36,7 @@ struct SortKeys {
 /// The first of them, or one before it.
 template <class Scalar>
 [[nodiscard, gnu::always_inline]] inline std::uint32_t firstNear(const SortedBucket<Scalar>& sorted,
-                                                                 const SortKeys<Scalar>& keys,
+                                                                 const Scalar* keys,
                                                                  std::uint32_t first,
                                                                  std::uint32_t last,
                                                                  Scalar low) noexcept {
@@ -67,7 +56,7 @@ template <class Scalar>
 
 /// One past the last of them, or one behind it; before firstNear() when there is none.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline std::uint32_t endOfNear(const SortKeys<Scalar>& keys,
+[[nodiscard, gnu::always_inline]] inline std::uint32_t endOfNear(const Scalar* keys,
                                                                  std::uint32_t first,
                                                                  std::uint32_t last,
                                                                  Scalar high) noexcept {

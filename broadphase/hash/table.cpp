@@ -8,6 +8,7 @@
 #include <broadphase/hash/crowded_buckets.inl>
 
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/prefetch.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/kernels.hpp>
 
@@ -224,10 +225,9 @@ void Table<Scalar>::linkLevels() noexcept {
         level.sortedBuckets = sorted;
         sorted += level.sortedCount;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            level.sortKeys[axis] =
-                isSettled() ? &(*settled_)[0].filed.low[axis] : bounds_[axis].data();
+            level.filedLow[axis] =
+                isSettled() ? settled_->filedLow[axis].data() : bounds_[axis].data();
         }
-        level.sortStride = isSettled() ? sizeof(SettledBox<Scalar>) / sizeof(Scalar) : 1;
     }
 }
 
@@ -238,62 +238,89 @@ void Table<Scalar>::clear() noexcept {
     proxyIndices_.clear();
     order_.clear();
     sortedBuckets_.clear();
-    if (settled_ != nullptr) {
-        settled_->clear();
-    }
+    unsettle();
 }
 
 // --- Boxes that move within those by which they are filed ----------------------------------------
 
+// Sorted buckets are searched by them; and in hashed cells they tell in which row an entry is.
 template <class Scalar>
-void Table<Scalar>::settle(std::span<const PaddedBox<Scalar>> boxes) {
+bool Table<Scalar>::asksForFiledLow() const noexcept {
+    return !sortedBuckets_.empty() || std::ranges::any_of(levels_, [](const Level<Scalar>& level) {
+        return level.kind == LevelKind::hashed && level.count() > 0;
+    });
+}
+
+template <class Scalar>
+void Table<Scalar>::settle() {
+    if (size() == 0) {
+        return;
+    }
     try {
         if (settled_ == nullptr) {
-            settled_ = std::make_unique<std::vector<SettledBox<Scalar>>>();
+            settled_ = std::make_unique<Settled>();
         }
-        settled_->resize(size());
+        for (auto& column : settled_->before) {
+            column.resize(bounds_[0].size());
+        }
+        for (std::size_t axis = 0; axis < 3 && asksForFiledLow(); ++axis) {
+            settled_->filedLow[axis] = bounds_[axis];
+        }
     } catch (...) {
         clear();
         throw;
-    }
-    for (std::uint32_t entry = 0; entry < size(); ++entry) {
-        (*settled_)[entry] = {padded(box(entry)), boxes[order_[entry]]};
     }
     linkLevels();
 }
 
 template <class Scalar>
-void Table<Scalar>::refresh(std::uint32_t entry) noexcept {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        bounds_[axis][entry] = (*settled_)[entry].now.low[axis];
-        bounds_[axis + 3][entry] = (*settled_)[entry].now.high[axis];
+void Table<Scalar>::refresh(std::uint32_t entry, const Scalar* corners,
+                            std::size_t stride) noexcept {
+    const Scalar* const now = corners + stride * proxyIndices_[entry];
+    for (std::size_t i = 0; i < bounds_.size(); ++i) {
+        settled_->before[i][entry] = std::exchange(bounds_[i][entry], now[i]);
     }
+    settled_->isRefreshed = true;
 }
 
 template <class Scalar>
-void Table<Scalar>::refreshAll(ParallelFor parallelFor) {
-    parallelFor(size(), kTableGrain, [this](std::size_t begin, std::size_t end) {
+void Table<Scalar>::refreshAll(const Scalar* corners, std::size_t stride, ParallelFor parallelFor) {
+    constexpr std::size_t kAhead = 12;
+    bounds_.swap(settled_->before);
+    settled_->isRefreshed = true;
+    linkLevels();
+    const Bounds& before = settled_->before;
+    parallelFor(size(), kTableGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t entry = begin; entry < end; ++entry) {
-            refresh(static_cast<std::uint32_t>(entry));
+            prefetch(corners + stride * proxyIndices_[std::min(entry + kAhead, end - 1)]);
+            const bool isErased = before[0][entry] != before[0][entry];
+            const Scalar* const now = corners + stride * proxyIndices_[entry];
+            for (std::size_t i = 0; i < bounds_.size(); ++i) {
+                bounds_[i][entry] = isErased ? before[i][entry] : now[i];
+            }
         }
     });
 }
 
 template <class Scalar>
 void Table<Scalar>::unsettle() noexcept {
-    if (settled_ != nullptr) {
-        settled_->clear();
-        linkLevels();
+    if (settled_ == nullptr) {
+        return;
     }
+    for (auto& column : settled_->before) {
+        column.clear();
+    }
+    for (auto& column : settled_->filedLow) {
+        column.clear();
+    }
+    settled_->isRefreshed = false;
+    linkLevels();
 }
 
 template <class Scalar>
 void Table<Scalar>::erase(std::uint32_t entry) noexcept {
     for (auto& column : bounds_) {
         column[entry] = std::numeric_limits<Scalar>::quiet_NaN();
-    }
-    if (isSettled()) {
-        (*settled_)[entry].now = padded(nanBox<Scalar>());
     }
 }
 
@@ -305,9 +332,10 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
                sizeof(std::uint32_t) +
            6 * bounds_[0].capacity() * sizeof(Scalar) +
            sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
-           (settled_ != nullptr
-                ? sizeof(*settled_) + settled_->capacity() * sizeof(SettledBox<Scalar>)
-                : 0) +
+           (settled_ != nullptr ? sizeof(*settled_) + (6 * settled_->before[0].capacity() +
+                                                       3 * settled_->filedLow[0].capacity()) *
+                                                          sizeof(Scalar)
+                                : 0) +
            (layout_ != nullptr ? layout_->memoryBytes() : 0);
 }
 
@@ -329,7 +357,12 @@ void Table<Scalar>::releaseUnusedMemory() noexcept {
     if (!isSettled()) {
         settled_.reset();
     } else {
-        settled_->shrink_to_fit();
+        for (auto& column : settled_->before) {
+            column.shrink_to_fit();
+        }
+        for (auto& column : settled_->filedLow) {
+            column.shrink_to_fit();
+        }
     }
     freeArrays(buckets_, longOnes_);
     linkLevels();
@@ -338,9 +371,9 @@ void Table<Scalar>::releaseUnusedMemory() noexcept {
 // Erased entries of a table that is not settled have no corner any more.
 template <class Scalar>
 bool Table<Scalar>::isSorted(const SortedBucket<Scalar>& sorted) const {
-    const auto axis = static_cast<Eigen::Index>(sorted.axis);
+    const Scalar* const keys = levels_.front().filedLow[sorted.axis];
     for (std::uint32_t entry = sorted.first + 1; entry < sorted.firstLong; ++entry) {
-        if (filedBox(entry).min()[axis] < filedBox(entry - 1).min()[axis]) {
+        if (keys[entry] < keys[entry - 1]) {
             return false;
         }
     }
@@ -365,7 +398,7 @@ bool Table<Scalar>::areSorted() const {
 }
 
 template <class Scalar>
-std::string Table<Scalar>::validate() const {
+std::string Table<Scalar>::validate(BoxOfEntry filedBox) const {
     std::uint32_t entry = 0;
     for (std::uint32_t i = 0; i < levels_.size(); ++i) {
         const Level<Scalar>& level = levels_[i];
@@ -382,8 +415,8 @@ std::string Table<Scalar>::validate() const {
                     continue;
                 }
                 const Aabb<Scalar> box = filedBox(entry);
-                if (isSettled() && !isWithin((*settled_)[entry].now, (*settled_)[entry].filed)) {
-                    return "A settled box lies within that by which it is filed: broken.";
+                if (!isWithin(padded(this->box(entry)), padded(box))) {
+                    return "Each box lies within that by which it is filed: broken.";
                 }
                 Cell low{};
                 for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -14,6 +14,7 @@
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/export.hpp>
+#include <broadphase/function_ref.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/geometry/quantise.hpp>
 #include <broadphase/hash/level.hpp>
@@ -43,6 +44,8 @@ using Columns = std::array<const Scalar*, 6>;
 template <class Scalar>
 class HASHPHASE_BROADPHASE_EXPORT Table {
 public:
+    using BoxOfEntry = FunctionRef<Aabb<Scalar>(std::uint32_t entry)>;
+
     /// Files boxes[i], of boxIndices[i], for every i, anew; boxes with a NaN are left out. Cell sizes
     /// follow the population, or are fixed when `fixed.count` > 0. Where it throws, for want of
     /// memory, nothing is filed. Cost: a few passes over the boxes; least when they come in about the
@@ -55,28 +58,29 @@ public:
     /// Leaves nothing filed.
     void clear() noexcept;
 
-    /// To be called after build(): the boxes that it was given are those by which boxes[i] are filed, each
-    /// around boxes[i]. Answers are by them until refreshAll(). Where memory runs out, nothing is filed.
-    void settle(std::span<const PaddedBox<Scalar>> boxes);
-    /// True after settle(): then answers are by the boxes as of the last refresh.
+    /// To be called after build(): the boxes that it was given are larger than those by which it is to answer,
+    /// from the next refresh on. Where memory runs out, nothing is filed.
+    void settle();
     [[nodiscard]] bool isSettled() const noexcept {
-        return settled_ != nullptr && !settled_->empty();
+        return settled_ != nullptr && !settled_->before[0].empty();
     }
-    [[nodiscard]] std::span<const SettledBox<Scalar>> settled() const noexcept {
-        return isSettled() ? std::span(*settled_) : std::span<SettledBox<Scalar>>();
+    /// Of a settled table: from now on answers for an entry, or for all that are not erased, are by other boxes,
+    /// each of which lies within that by which it is filed. That of a proxy has its corners at
+    /// corners + stride * proxyIndex, the min corner first. Those before can be had until endRefresh().
+    void refresh(std::uint32_t entry, const Scalar* corners, std::size_t stride) noexcept;
+    void refreshAll(const Scalar* corners, std::size_t stride, ParallelFor parallelFor);
+    void endRefresh() noexcept {
+        if (settled_ != nullptr) {
+            settled_->isRefreshed = false;
+        }
     }
-    /// Of a settled table: their boxes from the next refresh() on are the `now`, each within its `filed`.
-    [[nodiscard]] SettledBox<Scalar>* settledData() noexcept {
-        return settled_ != nullptr ? settled_->data() : nullptr;
+    /// That of the last but one refresh, of an entry that was refreshed since the last endRefresh(); where none
+    /// was, that of the last one.
+    [[nodiscard]] Aabb<Scalar> boxBefore(std::uint32_t entry) const noexcept {
+        return boxAt(settled_->isRefreshed ? settled_->before : bounds_, entry);
     }
-    void refresh(std::uint32_t entry) noexcept;
-    void refreshAll(ParallelFor parallelFor);
     /// Files by boxes as they are. No entry is left that was filed by another one.
     void unsettle() noexcept;
-    /// By which the entry is filed.
-    [[nodiscard]] Aabb<Scalar> filedBox(std::uint32_t entry) const noexcept {
-        return isSettled() ? unpadded((*settled_)[entry].filed) : box(entry);
-    }
 
     /// Takes the entry out of every later answer. Cost: O(1); its place is reclaimed by build().
     void erase(std::uint32_t entry) noexcept;
@@ -113,8 +117,7 @@ public:
 
     /// The entry's box, or NaN when it was erased.
     [[nodiscard]] Aabb<Scalar> box(std::uint32_t entry) const noexcept {
-        return {Vector3<Scalar>(bounds_[0][entry], bounds_[1][entry], bounds_[2][entry]),
-                Vector3<Scalar>(bounds_[3][entry], bounds_[4][entry], bounds_[5][entry])};
+        return boxAt(bounds_, entry);
     }
 
     /// Coordinates of all entries, by column; readable kColumnPadding past any entry.
@@ -123,15 +126,34 @@ public:
                 bounds_[3].data(), bounds_[4].data(), bounds_[5].data()};
     }
 
-    /// Says which invariant is broken, in a sentence; empty when all hold:
-    /// - A settled box lies within that by which it is filed, which is meant in what follows.
+    /// Says which invariant is broken, in a sentence; empty when all hold. Of a settled table `filedBox` tells the
+    /// boxes by which entries are filed, which are meant in what follows.
+    /// - Each box lies within that by which it is filed.
     /// - Every entry lies in the bucket of the cell of its min corner.
     /// - Every entry spans at most two cells of its level an axis, or is listed without cells.
     /// - Buckets partition the entries in order.
     /// - A sorted bucket is sorted along its axis, and its parts follow each other.
-    [[nodiscard]] std::string validate() const;
+    [[nodiscard]] std::string validate() const {
+        return validate([this](std::uint32_t entry) { return box(entry); });
+    }
+    [[nodiscard]] std::string validate(BoxOfEntry filedBox) const;
 
 private:
+    using Bounds = std::array<std::vector<Scalar>, 6>;
+
+    /// Of a table whose boxes move within those by which they are filed.
+    struct Settled {
+        Bounds before;  // as of the last but one refresh; empty for none
+        // The least corners by which entries are filed, where searches ask for them.
+        std::array<std::vector<Scalar>, 3> filedLow;
+        bool isRefreshed = false;
+    };
+
+    [[nodiscard]] static Aabb<Scalar> boxAt(const Bounds& bounds, std::uint32_t entry) noexcept {
+        return {Vector3<Scalar>(bounds[0][entry], bounds[1][entry], bounds[2][entry]),
+                Vector3<Scalar>(bounds[3][entry], bounds[4][entry], bounds[5][entry])};
+    }
+    [[nodiscard]] bool asksForFiledLow() const noexcept;
     void findBuckets(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                      ParallelFor parallelFor);
     void layOut(std::span<const PaddedBox<Scalar>> boxes);
@@ -163,9 +185,8 @@ private:
     std::vector<std::uint32_t> order_;
     std::vector<std::uint32_t> bucketOfEntry_;
     std::vector<SortedBucket<Scalar>> sortedBuckets_;
-    std::array<std::vector<Scalar>, 6> bounds_;  // kColumnPadding longer than the entries
-
-    std::unique_ptr<std::vector<SettledBox<Scalar>>> settled_;  // by entry; null or empty for none
+    Bounds bounds_;                     // kColumnPadding longer than the entries
+    std::unique_ptr<Settled> settled_;  // made when the first ones settle
 
     std::vector<std::uint32_t> buckets_;   // scratch of build()
     std::vector<std::uint32_t> longOnes_;  // the same

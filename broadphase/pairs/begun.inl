@@ -112,7 +112,7 @@ void findAgainstResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
         // Not by their indices: these boxes are at hand.
         const PaddedBox<Scalar>& before = pairs.frame.before[mobile.order()[entry]];
         const Aabb<Scalar> other = isShifted || pairs.proxies.changedNow(proxyIndex)
-                                       ? pairs.proxies.boxAtUpdate(proxyIndex)
+                                       ? pairs.store.boxAtUpdate(proxyIndex)
                                        : resting.box(restingEntry);
         if (!overlaps(unpadded(before), other)) {
             pairs.listToAsk(pairKey(mobile.proxyIndex(entry), proxyIndex));

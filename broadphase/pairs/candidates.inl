@@ -42,8 +42,8 @@ void forEachOverlapAtUpdate(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
             visit(pairKey(proxyIndex, other));
         }
     };
-    const Aabb<Scalar>& before = proxies.before(proxyIndex);
-    const Aabb<Scalar>& inTable = last.isOwn() ? proxies.boxAtUpdate(proxyIndex) : before;
+    const Aabb<Scalar>& before = pairs.store.before(proxyIndex);
+    const Aabb<Scalar>& inTable = last.isOwn() ? pairs.store.boxAtUpdate(proxyIndex) : before;
     forEachTouching(pairs.scratch, *last.table, inTable, visitIfTheyDid);
     forEachTouching(pairs.scratch, pairs.tables.resting, before, visitIfTheyDid);
     for (std::size_t i = last.indexedWoken; i < proxies.woken.size(); ++i) {
@@ -100,7 +100,7 @@ void forEachKnown(PairState<Scalar>& pairs, const Visit& visit) {
     BoxColumns<Scalar>& bounds = pairs.scratch.bounds;
     bounds.clear();
     for (const std::uint32_t proxyIndex : table.proxyIndices()) {
-        bounds.push(proxies.before(proxyIndex));
+        bounds.push(pairs.store.before(proxyIndex));
     }
     const GroupsView view{groups, table.proxyIndices().data(), {}};
     forOverlaps(bounds.columns(), bounds.size(), resting, groups != nullptr ? &view : nullptr, cost,

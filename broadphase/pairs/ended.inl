@@ -14,7 +14,7 @@ namespace hashphase::detail {
 
 template <class Scalar>
 void endIfWokenApart(PairState<Scalar>& pairs, std::uint32_t a, std::uint32_t b) {
-    if (!pairs.proxies.boxesAtUpdate.empty() && !pairs.proxies.overlappedAtUpdate(a, b)) {
+    if (!pairs.proxies.boxesAtUpdate.empty() && !pairs.store.overlappedAtUpdate(a, b)) {
         return;  // a shift of the origin has rounded them together
     }
     const PairKey key = pairKey(a, b);
@@ -33,7 +33,7 @@ GroupKinds::Set listWoken(PairState<Scalar>& pairs) {
     GroupKinds::Set kinds = 0;
     pairs.scratch.bounds.clear();
     for (const std::uint32_t proxyIndex : proxies.woken) {
-        pairs.scratch.bounds.push(proxies.before(proxyIndex));
+        pairs.scratch.bounds.push(pairs.store.before(proxyIndex));
         if (groups != nullptr) {
             kinds |=
                 GroupKinds::bit(proxies.groupKinds.numberOf(groups[2 * std::size_t{proxyIndex}]));

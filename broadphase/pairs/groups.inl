@@ -31,7 +31,7 @@ template <class Scalar>
 void listRegrouped(PairState<Scalar>& pairs) {
     const auto listIfUnknown = [&](std::uint32_t a, std::uint32_t b) {
         const PairKey key = pairKey(a, b);
-        if (pairs.proxies.overlappedAtUpdate(a, b) && !pairs.wasCandidate(key)) {
+        if (pairs.store.overlappedAtUpdate(a, b) && !pairs.wasCandidate(key)) {
             pairs.listToAsk(key);
         }
     };

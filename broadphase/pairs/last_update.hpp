@@ -52,7 +52,7 @@ struct LastUpdate {
         OwnTable<Scalar>& own = scratchTable();
         own.boxes.clear();
         for (const std::uint32_t proxyIndex : ofProxies) {
-            own.boxes.push_back(padded(store.proxies.boxAtUpdate(proxyIndex)));
+            own.boxes.push_back(padded(store.boxAtUpdate(proxyIndex)));
         }
         own.build(ofProxies, own.boxes, store.fixedSizes(), parallelFor, groups);
         return own;

@@ -224,8 +224,7 @@ bool isInRow(const Level<Scalar>& level, std::uint32_t entry, Row row) {
         return true;
     } else {
         const auto cellAlong = [&](std::size_t axis) {
-            const SortKeys<Scalar> filed{level.sortKeys[axis], level.sortStride};
-            return level.cell(filed[entry], axis);
+            return level.cell(level.filedLow[axis][entry], axis);
         };
         return cellAlong(1) == row.y && cellAlong(2) == row.z;
     }
@@ -289,7 +288,7 @@ bool sweepPart(const Level<Scalar>& level, const Query& query, const SortedBucke
     if (run.last <= run.first || !query.findsAny(sorted)) {
         return true;
     }
-    const SortKeys<Scalar> keys{level.sortKeys[sorted.axis], level.sortStride};
+    const Scalar* const keys = level.filedLow[sorted.axis];
     const Scalar low = query.columns[sorted.axis][query.number];
     const Scalar high = query.columns[sorted.axis + 3][query.number];
     const Run longOnes = {highest(run.first, sorted.firstLong), run.last};

@@ -38,13 +38,6 @@ template <class Scalar>
     return result;
 }
 
-/// A box that moves within the one by which it is filed.
-template <class Scalar>
-struct SettledBox {
-    PaddedBox<Scalar> filed;
-    PaddedBox<Scalar> now;
-};
-
 /// Two entries whose boxes overlap, or two numbers of whatever else was asked about.
 struct IndexPair {
     std::uint32_t a;
@@ -237,18 +230,12 @@ struct Kernels {
                                const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
                                IndexPair* apart);
 
-    /// Moves boxes[entries[i]].now to the box whose corners are the six numbers at corners + stride * indices[i],
-    /// where that lies within `filed` and is not inverted. Writes the numbers i of the others to `left`; returns how
-    /// many.
-    std::size_t (*moveWithin)(const Scalar* corners, std::size_t stride,
-                              const std::uint32_t* indices, const std::uint32_t* entries,
-                              std::size_t count, SettledBox<Scalar>* boxes, std::uint32_t* left);
-
     /// Writes the numbers of those of the pairs first to last to `turned`, which has room for all, whose
-    /// boxes overlap now though overlapped[i] is 0, or do not though it is 1. Returns how many.
+    /// boxes overlap now though overlapped[i] is 0, or do not though it is 1. The corners of box a are the six
+    /// numbers at corners + stride * a, the min corner first. Returns how many.
     std::size_t (*selectTurned)(const IndexPair* pairs, const std::uint8_t* overlapped,
-                                std::uint32_t first, std::uint32_t last,
-                                const SettledBox<Scalar>* boxes, std::uint32_t* turned);
+                                std::uint32_t first, std::uint32_t last, const Scalar* corners,
+                                std::size_t stride, std::uint32_t* turned);
 
     /// Counts the neighbours of the agents first to last. This and the next two return how many
     /// neighbours there are in all.

@@ -105,44 +105,17 @@ std::size_t selectApart(const IndexPair* pairs, std::size_t count, const std::ui
 
 template <class Scalar>
 std::size_t selectTurned(const IndexPair* pairs, const std::uint8_t* overlapped,
-                         std::uint32_t first, std::uint32_t last, const SettledBox<Scalar>* boxes,
-                         std::uint32_t* turned) {
+                         std::uint32_t first, std::uint32_t last, const Scalar* corners,
+                         std::size_t stride, std::uint32_t* turned) {
     std::size_t selected = 0;
     for (std::uint32_t i = first; i < last; ++i) {
-        const bool overlap = !isApart(boxes[pairs[i].a].now, boxes[pairs[i].b].now);
+        PaddedBox<Scalar> a, b;
+        padCorners(corners + stride * pairs[i].a, a);
+        padCorners(corners + stride * pairs[i].b, b);
         turned[selected] = i;
-        selected += (overlap ? 1 : 0) != overlapped[i] ? 1 : 0;
+        selected += (isApart(a, b) ? 0 : 1) != overlapped[i] ? 1 : 0;
     }
     return selected;
-}
-
-template <class Scalar>
-PaddedBox<Scalar> insideOut(const PaddedBox<Scalar>& box) {
-    PaddedBox<Scalar> turned;
-    std::memcpy(turned.low, box.high, sizeof(turned.low));
-    std::memcpy(turned.high, box.low, sizeof(turned.high));
-    return turned;
-}
-
-// A box that is within another one is not apart from it when it is turned inside out; nor is one that is not
-// inverted apart from itself.
-template <class Scalar>
-std::size_t moveWithin(const Scalar* corners, std::size_t stride, const std::uint32_t* indices,
-                       const std::uint32_t* entries, std::size_t count, SettledBox<Scalar>* boxes,
-                       std::uint32_t* left) {
-    std::size_t leftCount = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        SettledBox<Scalar>& own = boxes[entries[i]];
-        PaddedBox<Scalar> box;
-        padCorners(corners + stride * indices[i], box);
-        const PaddedBox<Scalar> turned = insideOut(box);
-        if (isApart(own.filed, turned) || isApart(box, box)) {
-            left[leftCount++] = static_cast<std::uint32_t>(i);
-        } else {
-            own.now = box;
-        }
-    }
-    return leftCount;
 }
 
 template <class Scalar>
@@ -158,7 +131,6 @@ constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinList<Scalar>,
                                    &findRange<Scalar>,
                                    &selectApart<Scalar>,
-                                   &moveWithin<Scalar>,
                                    &selectTurned<Scalar>,
                                    &countWithin<Scalar>,
                                    &countGroupsWithin<Scalar>,

@@ -61,7 +61,7 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
             frame.now[i] =
                 padded(what == StageFor::queries ? record.box : proxies.standingBox(record));
             if (hasPairs) {
-                frame.before[i] = padded(proxies.boxAtUpdate(proxies.mobile[i]));
+                frame.before[i] = padded(boxAtUpdate(proxies.mobile[i]));
             }
             const bool isIdle = this->isIdle(record);
             const bool maySettle = observes && observe(proxies.mobile[i], record);
@@ -110,7 +110,7 @@ bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
     ensureCapacity(frame.boxes, filedCount + joining);
     listResting();
     if (settling != nullptr) {
-        settling->stayedCount = static_cast<std::uint32_t>(frame.boxes.size());
+        settling->stayedCount = static_cast<std::uint32_t>(frame.proxyIndices.size());
     }
     for (std::size_t i = 0; joining > 0 && i < proxies.mobile.size(); ++i) {
         Record& record = proxies.records[proxies.mobile[i]];
@@ -123,7 +123,6 @@ bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
             record.hasSlack = !isIdle;
             proxies.settledChanged += isIdle ? 0 : 1;
             frame.proxyIndices.push_back(proxies.mobile[i]);
-            frame.boxes.push_back(frame.now[i]);
             frame.now[i] = padded(nanBox<Scalar>());
         }
     }
@@ -139,31 +138,32 @@ void Store<Scalar>::listResting() {
     for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
         Record& record = proxies.records[proxyIndex];
         if (record.residency == Residency::resting) {
-            record.hasSlack = record.hasSlack && !isIdle(record);
+            const bool keepsSlack = record.hasSlack && !isIdle(record);
+            loseSlack(proxyIndex);
+            record.hasSlack = keepsSlack;
             frame.proxyIndices.push_back(proxyIndex);
-            frame.boxes.push_back(padded(record.box));
         }
     }
+    tables.settledAt = proxies.updateNumber;
 }
 
+// Those that are listed, by larger boxes where they have slack.
 template <class Scalar>
 void Store<Scalar>::fileResting(ParallelFor parallelFor) {
-    const bool haveSlack = std::ranges::any_of(frame.proxyIndices, [this](std::uint32_t index) {
-        return proxies.records[index].hasSlack;
-    });
-    if (haveSlack) {
-        growBoxes();
+    std::size_t slackCount = 0;
+    for (const std::uint32_t proxyIndex : frame.proxyIndices) {
+        frame.boxes.push_back(boxToFile(proxyIndex));
+        slackCount += proxies.records[proxyIndex].hasSlack ? 1 : 0;
+    }
+    if (settling != nullptr) {
+        settling->slackCount = slackCount;
     }
     tables.resting.file(frame.proxyIndices, frame.boxes, fixedSizes(), parallelFor,
                         proxies.groupsOfAll());
-    if (haveSlack) {
-        for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
-            frame.boxes[i] = padded(proxies.records[frame.proxyIndices[i]].box);
-        }
-        tables.resting.settle(frame.boxes);
+    if (slackCount > 0) {
+        tables.resting.settle();
     }
     tables.idleUpdates = 0;
-    tables.settledAt = proxies.updateNumber;
     tables.restingKinds = 0;
     for (std::uint32_t entry = 0; entry < tables.resting.size(); ++entry) {
         proxies.records[tables.resting.proxyIndex(entry)].listedAt = entry;
@@ -246,6 +246,10 @@ UpdateCost Store<Scalar>::endUpdate() noexcept {
         cost.largestCell = std::max(cost.largestCell, filing.table->largestCell());
         finest = std::min(finest, filing.table->finestCellSize());
     }
+    if (isRestFiledNow() && tables.resting.isSettled()) {
+        keepFiledBoxes();
+    }
+    tables.resting.endRefresh();
     proxies.woken.clear();
     proxies.settledChanged = 0;
     proxies.boxesAtUpdate.clear();
@@ -284,14 +288,14 @@ template <class Scalar>
 void Store<Scalar>::wakeAll() noexcept {
     for (const std::uint32_t proxyIndex : proxies.mobile) {
         Record& record = proxies.records[proxyIndex];
+        loseSlack(proxyIndex);
         record.residency =
             record.residency == Residency::resting ? Residency::mobile : record.residency;
-        record.hasSlack = false;
     }
     for (std::uint32_t proxyIndex = 0; proxyIndex < proxies.records.size(); ++proxyIndex) {
         if (proxies.records[proxyIndex].residency == Residency::resting) {
+            loseSlack(proxyIndex);
             proxies.records[proxyIndex].residency = Residency::mobile;
-            proxies.records[proxyIndex].hasSlack = false;
             proxies.listMobile(proxyIndex);
             proxies.woken.push_back(proxyIndex);
         }

@@ -35,7 +35,7 @@ template <class Scalar>
 struct alignas(16 * sizeof(Scalar)) Record {
     /// NaN while the index has no proxy.
     Aabb<Scalar> box = nanBox<Scalar>();
-    /// standingBox() at the last update, if it has changed since.
+    /// standingBox() at the last update, if it has changed since; of what has slack the box by which it is filed.
     Aabb<Scalar> before = nanBox<Scalar>();
     std::uint32_t generation = 0;  // odd while the index has a proxy
     std::uint32_t changedAt = 0;   // number of the update that will see, or saw, the last change
@@ -51,7 +51,11 @@ struct alignas(16 * sizeof(Scalar)) Record {
     bool isImmediate : 1 = false;  // a pair of the proxy's was reported since the last update
     bool hasSlack : 1 = false;     // it rests, and is filed by a larger box
     bool isCalm : 1 = false;       // in the last update that saw it mobile
+
+    static constexpr std::size_t kStride = 16;  // from one to the next, in coordinates
 };
+static_assert(sizeof(Record<float>) == Record<float>::kStride * sizeof(float));
+static_assert(sizeof(Record<double>) == Record<double>::kStride * sizeof(double));
 
 /// Indices without a proxy, one after the other by Record::listedAt.
 struct FreeList {
@@ -133,26 +137,6 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     [[nodiscard]] static const Box& nowhere() noexcept {
         static const Box box = nanBox<Scalar>();
         return box;
-    }
-
-    // --- The last update -------------------------------------------------------------------------
-
-    /// standingBox() at the last update, in present coordinates; NaN when it had no proxy.
-    [[nodiscard]] const Box& before(std::uint32_t proxyIndex) const noexcept {
-        return changedNow(proxyIndex) ? records[proxyIndex].before
-                                      : standingBox(records[proxyIndex]);
-    }
-    /// The same in coordinates in which such boxes may be compared with each other.
-    [[nodiscard]] const Box& boxAtUpdate(std::uint32_t proxyIndex) const noexcept {
-        if (boxesAtUpdate.empty()) {
-            return before(proxyIndex);
-        }
-        const std::size_t place =
-            indicesAtUpdate.size() == 0 ? proxyIndex : indicesAtUpdate.find(proxyIndex);
-        return place < boxesAtUpdate.size() ? boxesAtUpdate[place] : before(proxyIndex);
-    }
-    [[nodiscard]] bool overlappedAtUpdate(std::uint32_t a, std::uint32_t b) const noexcept {
-        return overlaps(boxAtUpdate(a), boxAtUpdate(b));
     }
 
     // --- Groups ----------------------------------------------------------------------------------

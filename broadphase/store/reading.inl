@@ -191,7 +191,10 @@ void Store<Scalar>::growTrees(const Reading& reading, std::size_t rayCount) cons
     Tables<Scalar>::forAll(self.tables, [&](FiledTable<Scalar>& table) {
         const auto isRead = [&](const Filing& filing) { return filing.table == &table; };
         if (std::ranges::any_of(reading.all, isRead) && table.lacksTree(rayCount)) {
-            table.tree.build(table);
+            const bool isResting = &table == &tables.resting;
+            table.tree.build(table, [&](std::uint32_t entry) {
+                return isResting ? filedBox(entry) : table.box(entry);
+            });
             table.isTreeStale.store(false, std::memory_order_release);
         }
     });

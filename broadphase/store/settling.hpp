@@ -22,7 +22,7 @@ template <class Scalar>
 struct Tremor {
     Scalar reach = 0;              // about the longest move of a coordinate in the last updates [m]
     std::uint16_t calmCount = 0;   // updates in which it was calm, one after another
-    std::uint8_t slackFactor = 3;  // slack by reach
+    std::uint8_t slackFactor = 6;  // slack by reach
     std::uint8_t patience = 1;     // how many times as long it has to be calm before it settles
 };
 
@@ -34,14 +34,14 @@ struct Settling {
     std::size_t slackCount = 0;  // of those that had slack when they were filed
 
     // Of the update under way.
-    std::uint32_t calmCount = 0;                // of those that may settle with slack
-    std::vector<std::uint32_t> changedEntries;  // of the resting table, unless they are many
+    std::uint32_t calmCount = 0;         // of those that may settle with slack
+    std::vector<std::uint32_t> changed;  // indices of those with slack, unless they are many
     bool areManyChanged = false;
     std::uint32_t stayedCount = 0;  // Table::order() of what rested before, below this
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + tremors.capacity() * sizeof(tremors[0]) +
-               changedEntries.capacity() * sizeof(changedEntries[0]);
+               changed.capacity() * sizeof(changed[0]);
     }
 };
 

@@ -6,11 +6,8 @@
 #include <broadphase/store/store.hpp>
 
 #include <broadphase/core/ensure_capacity.hpp>
-#include <broadphase/core/prefetch.hpp>
-#include <broadphase/simd/kernels.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 
@@ -135,54 +132,36 @@ Scalar Store<Scalar>::slackOf(std::uint32_t proxyIndex) const noexcept {
     return config.slack ? most : std::min(most, tremor.reach * tremor.slackFactor);
 }
 
-// By as much as they may move.
+// By as much larger as it may move.
 template <class Scalar>
-void Store<Scalar>::growBoxes() {
-    settling->slackCount = 0;
-    for (std::size_t i = 0; i < frame.boxes.size(); ++i) {
-        const std::uint32_t proxyIndex = frame.proxyIndices[i];
-        if (proxies.records[proxyIndex].hasSlack) {
-            ++settling->slackCount;
-            frame.boxes[i] = grownBy(frame.boxes[i], slackOf(proxyIndex));
-        }
-    }
+PaddedBox<Scalar> Store<Scalar>::boxToFile(std::uint32_t proxyIndex) const noexcept {
+    const Record& record = proxies.records[proxyIndex];
+    return record.hasSlack ? grownBy(padded(record.box), slackOf(proxyIndex)) : padded(record.box);
+}
+
+template <class Scalar>
+auto Store<Scalar>::filedBox(std::uint32_t entry) const noexcept -> Box {
+    const std::uint32_t proxyIndex = tables.resting.proxyIndex(entry);
+    const Record& record = proxies.records[proxyIndex];
+    const bool isListed =
+        record.residency == Residency::resting && record.hasSlack && !isRestFiledNow();
+    return isListed ? record.before : tables.resting.box(entry);
 }
 
 template <class Scalar>
 void Store<Scalar>::followSettled() {
     constexpr std::size_t kMany = 4;
-    constexpr std::size_t kAtOnce = 64;
     if (settling == nullptr) {
         return;
     }
-    Table<Scalar>& table = tables.resting;
-    settling->areManyChanged = proxies.settledChanged > table.size() / kMany;
-    settling->changedEntries.clear();
-    std::array<std::uint32_t, kAtOnce> proxyIndices;
-    std::array<std::uint32_t, kAtOnce> entries;
-    std::array<std::uint32_t, kAtOnce> left;
-    const std::size_t count = proxies.settledChanged > 0 ? proxies.waiting.size() : 0;
-    for (std::size_t i = 0; i < count;) {
-        std::size_t some = 0;
-        for (; i < count && some < kAtOnce; ++i) {
-            const std::uint32_t proxyIndex = proxies.waiting[i];
-            const Record& record = proxies.records[proxyIndex];
-            proxyIndices[some] = proxyIndex;
-            entries[some] = record.listedAt;
-            prefetch(record.hasSlack ? table.settledData() + record.listedAt : nullptr);
-            some += record.hasSlack ? 1 : 0;
-        }
-        const std::size_t leftCount = kernels<Scalar>().moveWithin(
-            proxies.records.data()->box.min().data(), sizeof(Record) / sizeof(Scalar),
-            proxyIndices.data(), entries.data(), some, table.settledData(), left.data());
-        for (std::size_t k = 0; k < leftCount; ++k) {
-            noteLeft(proxyIndices[left[k]]);
-            wake(proxyIndices[left[k]]);
-        }
-        for (std::size_t k = 0; k < some && !settling->areManyChanged; ++k) {
-            if (proxies.records[proxyIndices[k]].hasSlack) {
-                settling->changedEntries.push_back(entries[k]);
-            }
+    settling->areManyChanged = proxies.settledChanged > tables.resting.size() / kMany;
+    settling->changed.clear();
+    if (settling->areManyChanged || proxies.settledChanged == 0) {
+        return;
+    }
+    for (const std::uint32_t proxyIndex : proxies.waiting) {
+        if (proxies.records[proxyIndex].hasSlack) {
+            settling->changed.push_back(proxyIndex);
         }
     }
 }
@@ -194,18 +173,33 @@ void Store<Scalar>::refreshSettled(ParallelFor parallelFor) {
     if (!table.isSettled()) {
         return;
     }
-    if (tables.settledAt == proxies.updateNumber || settling->areManyChanged) {
-        table.refreshAll(parallelFor);
+    const Scalar* const corners = proxies.records.data()->box.min().data();
+    if (isRestFiledNow() || settling->areManyChanged) {
+        table.refreshAll(corners, Record::kStride, parallelFor);
         return;
     }
-    for (const std::uint32_t entry : settling->changedEntries) {
-        table.refresh(entry);
+    for (const std::uint32_t proxyIndex : settling->changed) {
+        table.refresh(proxies.records[proxyIndex].listedAt, corners, Record::kStride);
+    }
+}
+
+// At the end of an update that has filed them: from then on moves look whether they stay within.
+template <class Scalar>
+void Store<Scalar>::keepFiledBoxes() noexcept {
+    for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
+        Record& record = proxies.records[proxyIndex];
+        if (record.hasSlack) {
+            record.before = unpadded(boxToFile(proxyIndex));
+        }
     }
 }
 
 // Who leaves soon gets more slack the next time, or if there is no more, waits longer.
 template <class Scalar>
 void Store<Scalar>::noteLeft(std::uint32_t proxyIndex) noexcept {
+    if (!proxies.records[proxyIndex].hasSlack) {
+        return;
+    }
     const std::uint32_t stayed = proxies.updateNumber - tables.settledAt;
     Tremor<Scalar>& tremor = settling->tremors[proxyIndex];
     const Scalar slack = tremor.reach * tremor.slackFactor;

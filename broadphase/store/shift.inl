@@ -55,7 +55,7 @@ void Store<Scalar>::keepBoxesAtUpdate(const Point& shift) {
     forEachListed([&](std::uint32_t proxyIndex) {
         if (!areFew ||
             proxies.indicesAtUpdate.findOrInsert(proxyIndex) == proxies.boxesAtUpdate.size()) {
-            proxies.boxesAtUpdate.push_back(proxies.before(proxyIndex));
+            proxies.boxesAtUpdate.push_back(before(proxyIndex));
         }
     });
 }

@@ -159,10 +159,10 @@ template <class Scalar>
 void Store<Scalar>::markChanged(std::uint32_t proxyIndex) noexcept {
     beforeChange();
     Record& record = proxies.records[proxyIndex];
-    countChange(record);
     if (record.residency == Residency::resting) {
         wake(proxyIndex);
     }
+    countChange(record);
     listChange(proxyIndex);
 }
 
@@ -175,17 +175,17 @@ void Store<Scalar>::listChange(std::uint32_t proxyIndex) noexcept {
     }
 }
 
-// What has slack wakes only where it leaves it, which the update will see.
+// What has slack wakes only where it leaves it.
 template <class Scalar>
 void Store<Scalar>::moveAny(std::uint32_t proxyIndex, Box box) {  // NOLINT(*-value-param)
     beforeChange();  // by which it may have lost its slack
     Record& record = proxies.records[proxyIndex];
-    countChange(record);
-    if (record.hasSlack) {
-        ++proxies.settledChanged;
-    } else if (record.residency == Residency::resting) {
+    if (record.residency == Residency::resting && !movesInPlace(record, box)) {
+        noteLeft(proxyIndex);
         wake(proxyIndex);
     }
+    proxies.settledChanged += record.hasSlack ? 1 : 0;
+    countChange(record);
     listChange(proxyIndex);
     setBox(record, box);
 }
@@ -193,12 +193,22 @@ void Store<Scalar>::moveAny(std::uint32_t proxyIndex, Box box) {  // NOLINT(*-va
 template <class Scalar>
 void Store<Scalar>::wake(std::uint32_t proxyIndex) noexcept {
     Record& record = proxies.records[proxyIndex];
+    loseSlack(proxyIndex);
     tables.resting.erase(record.listedAt);
     ++tables.restingErased;
     record.residency = Residency::mobile;
-    record.hasSlack = false;
     proxies.listMobile(proxyIndex);
     proxies.woken.push_back(proxyIndex);
+}
+
+// Then the record has its box before, as those of others.
+template <class Scalar>
+void Store<Scalar>::loseSlack(std::uint32_t proxyIndex) noexcept {
+    Record& record = proxies.records[proxyIndex];
+    if (record.hasSlack) {
+        record.before = before(proxyIndex);
+        record.hasSlack = false;
+    }
 }
 
 template <class Scalar>
@@ -264,7 +274,10 @@ std::string Store<Scalar>::validate() const {
     std::vector<std::uint32_t> timesFound(proxies.records.size(), 0);
     for (const Filing& filing : reading.filings()) {
         const FiledTable<Scalar>& table = *filing.table;
-        if (std::string error = table.validate(); !error.empty()) {
+        const auto boxOf = [&](std::uint32_t entry) {
+            return filing.isResting ? filedBox(entry) : table.box(entry);
+        };
+        if (std::string error = table.validate(boxOf); !error.empty()) {
             return error;
         }
         if (std::string error = table.validateTree(); !error.empty()) {

@@ -102,8 +102,20 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// Whether a move writes the record, two counts and the list of changes, and nothing else.
     [[nodiscard, gnu::always_inline]] static bool movesInPlace(const Record& record,
                                                                const Box& box) noexcept {
-        return (record.residency == Residency::mobile || record.hasSlack) && !record.isNan &&
-               !hasNan(box);
+        return record.hasSlack
+                   ? staysWithin(box, record.before)
+                   : record.residency == Residency::mobile && !record.isNan && !hasNan(box);
+    }
+    /// Whether the box is not inverted, and within the one by which it is filed.
+    [[nodiscard, gnu::always_inline]] static bool staysWithin(const Box& box,
+                                                              const Box& filed) noexcept {
+        for (Eigen::Index axis = 0; axis < 3; ++axis) {
+            if (!(filed.min()[axis] <= box.min()[axis] && box.min()[axis] <= box.max()[axis] &&
+                  box.max()[axis] <= filed.max()[axis])) {
+                return false;
+            }
+        }
+        return true;
     }
     /// Such a move. Counts, and calls list() where the proxy is to be listed.
     template <class ListChange>
@@ -140,14 +152,18 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
         if (record.changedAt == proxies.updateNumber) {
             return false;
         }
+        record.changedAt = proxies.updateNumber;
+        if (record.hasSlack) {
+            return true;  // its table has it
+        }
         record.before = record.box;
         if (record.residency == Residency::sweeping) {
             record.before = proxies.nowhere();  // as standingBox(), which copies more slowly
         }
-        record.changedAt = proxies.updateNumber;
         return true;
     }
     void wake(std::uint32_t proxyIndex) noexcept;
+    void loseSlack(std::uint32_t proxyIndex) noexcept;
     /// All that are filed by larger boxes than their own.
     void wakeSettled() noexcept;
     void setBox(Record& record, const Box& box) {
@@ -171,9 +187,40 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     bool shiftRecord(std::uint32_t proxyIndex, const Point& shift) noexcept;
     void shiftTables(const Point& shift);
 
+    // --- The last update -------------------------------------------------------------------------
+
+    /// standingBox() at the last update, in present coordinates; NaN when the index had no proxy.
+    [[nodiscard]] Box before(std::uint32_t proxyIndex) const noexcept {
+        const Record& record = proxies.records[proxyIndex];
+        if (record.changedAt != proxies.updateNumber) {
+            return proxies.standingBox(record);
+        }
+        return record.hasSlack && !isRestFiledNow() ? tables.resting.boxBefore(record.listedAt)
+                                                    : record.before;
+    }
+    /// Whether the update under way has filed what rests. Until its end, records of those with slack have their
+    /// boxes before.
+    [[nodiscard]] bool isRestFiledNow() const noexcept {
+        return tables.settledAt == proxies.updateNumber;
+    }
+    /// before() in coordinates in which such boxes may be compared with each other.
+    [[nodiscard]] Box boxAtUpdate(std::uint32_t proxyIndex) const noexcept {
+        if (proxies.boxesAtUpdate.empty()) {
+            return before(proxyIndex);
+        }
+        const std::size_t place = proxies.indicesAtUpdate.size() == 0
+                                      ? proxyIndex
+                                      : proxies.indicesAtUpdate.find(proxyIndex);
+        return place < proxies.boxesAtUpdate.size() ? proxies.boxesAtUpdate[place]
+                                                    : before(proxyIndex);
+    }
+    [[nodiscard]] bool overlappedAtUpdate(std::uint32_t a, std::uint32_t b) const noexcept {
+        return overlaps(boxAtUpdate(a), boxAtUpdate(b));
+    }
+
     // --- The passes of an update, see step.hpp ---------------------------------------------------
 
-    /// Tells their table where the settled ones are now; those that have left their slack wake.
+    /// Lists which settled ones have moved within their slack.
     void followSettled();
     /// Copies the mobile boxes side by side.
     enum class StageFor : std::uint8_t { update, repair, queries };
@@ -195,13 +242,17 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     [[nodiscard]] bool isWorthSlack() const noexcept;
     void makeTremors();
     [[nodiscard]] bool hasTremor(std::uint32_t proxyIndex) const noexcept;
-    void growBoxes();
+    /// By which it is to be filed with what rests.
+    [[nodiscard]] PaddedBox<Scalar> boxToFile(std::uint32_t proxyIndex) const noexcept;
+    /// By which the entry of the resting table is filed.
+    [[nodiscard]] Box filedBox(std::uint32_t entry) const noexcept;
     [[nodiscard]] bool maySettle(std::uint32_t proxyIndex, const Record& record) const noexcept;
     /// How far it may move at most from where it is filed [m]; 0 for not at all.
     [[nodiscard]] Scalar mostSlack(const Box& box) const noexcept;
     [[nodiscard]] Scalar slackOf(std::uint32_t proxyIndex) const noexcept;
     /// Searches of their table see the settled ones where they are now.
     void refreshSettled(ParallelFor parallelFor);
+    void keepFiledBoxes() noexcept;
     /// Idle proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
     /// be worth filing the resting ones anew. Returns whether any did.
     [[nodiscard]] bool settleIdle(ParallelFor parallelFor);

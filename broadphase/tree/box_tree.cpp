@@ -38,7 +38,7 @@ TreeNode8 emptyBlock() {
 }  // namespace
 
 template <class Scalar>
-void BoxTree::build(const Table<Scalar>& table) {
+void BoxTree::build(const Table<Scalar>& table, typename Table<Scalar>::BoxOfEntry filedBox) {
     levels_.clear();
     blocks_.clear();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -46,7 +46,7 @@ void BoxTree::build(const Table<Scalar>& table) {
             table.levels().empty() ? 0 : static_cast<double>(table.levels().front().origin[axis]);
     }
     for (const Level<Scalar>& level : table.levels()) {
-        readBoxes(table, level);
+        readBoxes(table, level, filedBox);
         if (!boxes_.empty()) {
             sortAlongCurve();
             buildLevel();
@@ -54,15 +54,16 @@ void BoxTree::build(const Table<Scalar>& table) {
     }
 }
 
-template void BoxTree::build(const Table<float>&);
-template void BoxTree::build(const Table<double>&);
+template void BoxTree::build(const Table<float>&, Table<float>::BoxOfEntry);
+template void BoxTree::build(const Table<double>&, Table<double>::BoxOfEntry);
 
 template <class Scalar>
-void BoxTree::readBoxes(const Table<Scalar>& table, const Level<Scalar>& level) {
+void BoxTree::readBoxes(const Table<Scalar>& table, const Level<Scalar>& level,
+                        typename Table<Scalar>::BoxOfEntry filedBox) {
     boxes_.clear();
     boxes_.reserve(level.count());
     for (std::uint32_t entry = level.firstEntry; entry < level.lastEntry; ++entry) {
-        const Aabb<Scalar> filed = table.filedBox(entry);
+        const Aabb<Scalar> filed = filedBox(entry);
         Box box{};
         bool isNan = hasNan(table.box(entry));
         for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -34,10 +34,14 @@ struct BoxTreeLevel {
 
 class BoxTree {
 public:
-    /// Files the boxes of the table, but for those erased. Cost: a sort and two passes over the
-    /// boxes; allocates only while the table is larger than any before.
+    /// Files the boxes of the table, but for those erased, or the larger ones that `filedBox` tells of its entries.
+    /// Cost: a sort and two passes over the boxes; allocates only while the table is larger than any before.
     template <class Scalar>
-    void build(const Table<Scalar>& table);
+    void build(const Table<Scalar>& table, typename Table<Scalar>::BoxOfEntry filedBox);
+    template <class Scalar>
+    void build(const Table<Scalar>& table) {
+        build(table, [&](std::uint32_t entry) { return table.box(entry); });
+    }
 
     /// What bounds are relative to [m].
     [[nodiscard]] const std::array<double, 3>& origin() const noexcept { return origin_; }
@@ -69,7 +73,8 @@ private:
 
     [[nodiscard]] static Box boxOf(const TreeNode8& block, std::uint32_t lane);
     template <class Scalar>
-    void readBoxes(const Table<Scalar>& table, const Level<Scalar>& level);
+    void readBoxes(const Table<Scalar>& table, const Level<Scalar>& level,
+                   typename Table<Scalar>::BoxOfEntry filedBox);
     [[nodiscard]] float curveStep();
     void sortAlongCurve();
     void sortPlaces(int bits);
@@ -87,7 +92,7 @@ private:
     std::vector<Place> places2_;  // the same
 };
 
-extern template void BoxTree::build(const Table<float>&);
-extern template void BoxTree::build(const Table<double>&);
+extern template void BoxTree::build(const Table<float>&, Table<float>::BoxOfEntry);
+extern template void BoxTree::build(const Table<double>&, Table<double>::BoxOfEntry);
 
 }  // namespace hashphase::detail

@@ -8,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace hashphase::test {
@@ -93,6 +95,46 @@ TYPED_TEST(Settled, AreFoundWhereTheyAreBeforeAndAfterTheUpdate) {
         found += world.expectQueriesLikeBruteForce(8);
     }
     EXPECT_GT(found, 1000U);
+}
+
+TYPED_TEST(Settled, StayAsLongAsTheyAreWithinTheBoxByWhichTheyAreFiledAndNoLonger) {
+    TremblingWorld<TypeParam> world;
+    const TypeParam infinity = std::numeric_limits<TypeParam>::infinity();
+    const auto& proxies = world.grid.store().proxies;
+    std::size_t stayed = 0, left = 0;
+    for (std::size_t number = 0; number < 200; ++number) {
+        if (number % 25 == 0) {
+            world.play(40);
+        }
+        const std::size_t at = world.any();
+        const detail::Record<TypeParam>& record = proxies.records[world.proxies[at].id.index];
+        if (!record.hasSlack) {
+            continue;
+        }
+        const Aabb<TypeParam> filed = record.before;
+        // As large as that, flat, larger by the least there is, inverted by it, or with a NaN.
+        Aabb<TypeParam> box = filed;
+        const auto axis = static_cast<Eigen::Index>(world.random.below(3));
+        const bool isMin = world.random.chance(0.5);
+        TypeParam& side = isMin ? box.min()[axis] : box.max()[axis];
+        const TypeParam opposite = isMin ? box.max()[axis] : box.min()[axis];
+        const TypeParam outwards = isMin ? -infinity : infinity;
+        const auto how = number % 5;
+        side = how == 0   ? side
+               : how == 2 ? std::nextafter(side, outwards)
+               : how == 4 ? std::numeric_limits<TypeParam>::quiet_NaN()
+                          : opposite;
+        if (how == 3) {  // inverted, and both sides within
+            (isMin ? box.max()[axis] : box.min()[axis]) = std::nextafter(opposite, outwards);
+        }
+        world.moveTo(at, box);
+        EXPECT_EQ(bool{record.hasSlack}, how < 2) << how;
+        (record.hasSlack ? stayed : left) += 1;
+        world.expectQueriesLikeBruteForce(2);
+        world.updateAndCheck();
+    }
+    EXPECT_GT(stayed, 30U);
+    EXPECT_GT(left, 50U);
 }
 
 TYPED_TEST(Settled, LeaveTheirSlackAtAnyTime) {
