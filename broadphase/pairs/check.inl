@@ -53,11 +53,12 @@ template <class Scalar>
     const auto haveSlack = [&](PairKey key) {
         return pairs.areAtRest(key) && !pairs.areStill(key);
     };
+    const Table<Scalar>& table = pairs.tables.resting;
     const SettledPairs* const settled = pairs.watched.settled.get();
     std::vector<PairKey> listed;
     for (std::size_t i = 0; settled != nullptr && i < settled->pairs.size(); ++i) {
         const auto [a, b] = settled->pairs.pairs()[i];
-        const PairKey key = pairKey(a, b);
+        const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
         if (settled->overlapped[i] != 0 && haveSlack(key)) {
             listed.push_back(key);
         }

@@ -109,7 +109,6 @@ void findEnded(PairState<Scalar>& pairs, ParallelFor parallelFor) {
         return;  // see findBegunOfPairs()
     }
     findEndedOfWatched(pairs, parallelFor);
-    findTurned(pairs, parallelFor);
     for (const PairKey key : pairs.known.immediate.keys()) {
         pairs.endIfSeparated(key);
     }

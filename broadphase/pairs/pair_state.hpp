@@ -28,16 +28,15 @@
 
 namespace hashphase::detail {
 
-/// The candidates of two that are settled, of which one has slack: the pairs of indices, in the order of their
-/// table, whose filed boxes overlap and that may pair. They stand as long as the table is not filed anew; some may
-/// have left it.
+/// The candidates of two that are settled, of which one has slack: the pairs of entries of their table whose
+/// filed boxes overlap and that may pair. They stand as long as the table is not filed anew; entries may have
+/// left it.
 struct SettledPairs {
     PairList pairs;
     std::vector<std::uint8_t> overlapped;  // at the last update; by pair
-    // The numbers of each index's pairs, and where they begin; made when few change.
+    // The numbers of each entry's pairs, and where they begin; made when few entries change.
     std::vector<std::uint32_t> pairsOf;
     std::vector<std::uint32_t> firstOf;
-    std::size_t indexCount = 0;         // when the pairs were listed
     std::vector<std::uint32_t> turned;  // scratch
     std::vector<PairKey> begun;         // scratch
 

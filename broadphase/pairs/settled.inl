@@ -16,9 +16,9 @@
 
 namespace hashphase::detail {
 
-// Lists the numbers of each index's pairs.
-inline void listPairsOf(SettledPairs& settled, std::size_t indexCount) {
-    settled.firstOf.assign(indexCount + 1, 0);
+// Lists the numbers of each entry's pairs.
+inline void listPairsOf(SettledPairs& settled, std::size_t entryCount) {
+    settled.firstOf.assign(entryCount + 1, 0);
     for (const auto [a, b] : settled.pairs.pairs()) {
         ++settled.firstOf[a];
         ++settled.firstOf[b];
@@ -32,15 +32,16 @@ inline void listPairsOf(SettledPairs& settled, std::size_t indexCount) {
     }
 }
 
-// Selects the pairs that have come to overlap or to be apart; where few have changed perhaps some twice.
+// Selects the pairs that have come to overlap or to be apart; of those of few entries perhaps some twice.
 template <class Scalar>
 void selectTurned(PairState<Scalar>& pairs) {
+    const Table<Scalar>& table = pairs.tables.resting;
+    const Columns<Scalar> columns = table.columns();
     SettledPairs& settled = *pairs.watched.settled;
-    const std::vector<std::uint32_t>& changed = pairs.store.settling->changed;
     const auto select = [&](std::uint32_t first, std::uint32_t last, std::uint32_t* turned) {
-        return kernels<Scalar>().selectTurned(
-            settled.pairs.pairs().data(), settled.overlapped.data(), first, last,
-            pairs.proxies.records.data()->box.min().data(), Record<Scalar>::kStride, turned);
+        return kernels<Scalar>().selectTurned(settled.pairs.pairs().data(),
+                                              settled.overlapped.data(), first, last,
+                                              columns.data(), turned);
     };
     if (pairs.store.settling->areManyChanged) {
         const auto count = static_cast<std::uint32_t>(settled.pairs.size());
@@ -50,39 +51,42 @@ void selectTurned(PairState<Scalar>& pairs) {
         return;
     }
     settled.turned.clear();
+    const std::vector<std::uint32_t>& changed = pairs.store.settling->changedEntries;
     if (settled.firstOf.empty() && !changed.empty()) {
-        listPairsOf(settled, settled.indexCount);
+        listPairsOf(settled, table.size());
     }
-    for (const std::uint32_t proxyIndex : changed) {
-        const std::uint32_t end = settled.firstOf[proxyIndex + 1];
-        for (std::uint32_t k = settled.firstOf[proxyIndex]; k < end; ++k) {
+    for (const std::uint32_t entry : changed) {
+        const std::uint32_t end = settled.firstOf[entry + 1];
+        for (std::uint32_t k = settled.firstOf[entry]; k < end; ++k) {
             std::uint32_t turned = 0;
             if (select(settled.pairsOf[k], settled.pairsOf[k] + 1, &turned) > 0) {
                 settled.turned.push_back(turned);
             }
         }
-        pairs.cost.pairsWatched += end - settled.firstOf[proxyIndex];
+        pairs.cost.pairsWatched += end - settled.firstOf[entry];
     }
 }
 
-// Finds which of the pairs have begun, which findBegun() asks about, and ended.
+// Once their table has been refreshed: finds which of the pairs have begun, which findBegun() asks about, and
+// ended.
 template <class Scalar>
-void findTurned(PairState<Scalar>& pairs, ParallelFor /*parallelFor*/) {
+void findTurned(PairState<Scalar>& pairs) {
     if (pairs.watched.settled == nullptr) {
         return;
     }
+    const Table<Scalar>& table = pairs.tables.resting;
     SettledPairs& settled = *pairs.watched.settled;
     settled.begun.clear();
-    if (!pairs.tables.resting.isSettled() || pairs.proxies.settledChanged == 0) {
+    if (!table.isSettled() || pairs.proxies.settledChanged == 0) {
         return;
     }
     selectTurned(pairs);
     for (const std::uint32_t i : settled.turned) {
         const auto [a, b] = settled.pairs.pairs()[i];
-        const PairKey key = pairKey(a, b);
+        const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
         const bool overlapNow = pairs.areAtRest(key) && pairs.overlapNow(key);
         if (settled.overlapped[i] == (overlapNow ? 1 : 0)) {
-            continue;  // found twice, or one has left
+            continue;  // found twice
         }
         settled.overlapped[i] = overlapNow ? 1 : 0;
         if (overlapNow) {
@@ -155,15 +159,13 @@ void listSettled(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     ensureCapacity(settled.overlapped, settled.pairs.size());
     ensureCapacity(settled.turned, settled.pairs.size());
     ensureCapacity(settled.pairsOf, 2 * settled.pairs.size());
-    settled.indexCount = proxies.records.size();
-    ensureCapacity(settled.firstOf, settled.indexCount + 1);
-    for (IndexPair& pair : settled.pairs.all()) {
-        const bool hasOneJoined = hasJoined(pair.a) || hasJoined(pair.b);
-        pair = {table.proxyIndex(pair.a), table.proxyIndex(pair.b)};
-        const PairKey key = pairKey(pair.a, pair.b);
+    ensureCapacity(settled.firstOf, table.size() + std::size_t{1});
+    for (const auto [a, b] : settled.pairs.pairs()) {
+        const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
         const bool overlapNow = pairs.overlapNow(key);
         settled.overlapped.push_back(overlapNow ? 1 : 0);
-        if (overlapNow && hasOneJoined && !pairs.store.overlappedAtUpdate(pair.a, pair.b)) {
+        if (overlapNow && (hasJoined(a) || hasJoined(b)) &&
+            !pairs.store.overlappedAtUpdate(firstIndex(key), secondIndex(key))) {
             settled.begun.push_back(key);
         }
     }

@@ -21,11 +21,15 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
             if (pairs != nullptr) {
                 findEnded(*pairs, parallelFor);
             }
+            store.refreshSettled(parallelFor);
+            if (pairs != nullptr) {
+                findTurned(*pairs);
+            }
             const bool someSettled = store.settleIdle(parallelFor);
             if (pairs != nullptr) {
                 listSettled(*pairs, parallelFor);
             }
-            store.refreshSettled(parallelFor);
+            store.refreshFiled(parallelFor);
             store.fileMobile(parallelFor);
             isDone = pairs == nullptr || findBegun(*pairs, someSettled, filter, parallelFor);
             if (!isDone) {

@@ -231,11 +231,10 @@ struct Kernels {
                                IndexPair* apart);
 
     /// Writes the numbers of those of the pairs first to last to `turned`, which has room for all, whose
-    /// boxes overlap now though overlapped[i] is 0, or do not though it is 1. The corners of box a are the six
-    /// numbers at corners + stride * a, the min corner first. Returns how many.
+    /// boxes, by column, overlap now though overlapped[i] is 0, or do not though it is 1. Returns how many.
     std::size_t (*selectTurned)(const IndexPair* pairs, const std::uint8_t* overlapped,
-                                std::uint32_t first, std::uint32_t last, const Scalar* corners,
-                                std::size_t stride, std::uint32_t* turned);
+                                std::uint32_t first, std::uint32_t last,
+                                const Scalar* const* columns, std::uint32_t* turned);
 
     /// Counts the neighbours of the agents first to last. This and the next two return how many
     /// neighbours there are in all.

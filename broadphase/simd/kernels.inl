@@ -18,7 +18,6 @@
 //                      mask, which has kWidth, and may write so many; reads no others
 //   WidePack<Scalar>   the same for long runs, perhaps wider
 //   isApart(a, b)      whether two padded boxes do not overlap
-//   padCorners(corners, box)  makes `box` of six numbers, the min corner first
 //   fitsEdge(level, box)  whether no edge of the padded box is longer than the level's largest
 //   quantiseCorners(level, box, low)  sets `low` to the cell of the box's min corner and returns
 //                      whether the box spans one or two cells an axis, none of them clamped
@@ -103,17 +102,21 @@ std::size_t selectApart(const IndexPair* pairs, std::size_t count, const std::ui
     return selected;
 }
 
+// What is NaN overlaps nothing.
 template <class Scalar>
 std::size_t selectTurned(const IndexPair* pairs, const std::uint8_t* overlapped,
-                         std::uint32_t first, std::uint32_t last, const Scalar* corners,
-                         std::size_t stride, std::uint32_t* turned) {
+                         std::uint32_t first, std::uint32_t last, const Scalar* const* columns,
+                         std::uint32_t* turned) {
     std::size_t selected = 0;
     for (std::uint32_t i = first; i < last; ++i) {
-        PaddedBox<Scalar> a, b;
-        padCorners(corners + stride * pairs[i].a, a);
-        padCorners(corners + stride * pairs[i].b, b);
+        const auto [a, b] = pairs[i];
+        bool overlap = true;
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            overlap &= columns[axis][a] <= columns[axis + 3][b];
+            overlap &= columns[axis][b] <= columns[axis + 3][a];
+        }
         turned[selected] = i;
-        selected += (isApart(a, b) ? 0 : 1) != overlapped[i] ? 1 : 0;
+        selected += (overlap ? 1 : 0) != overlapped[i] ? 1 : 0;
     }
     return selected;
 }

@@ -34,14 +34,14 @@ struct Settling {
     std::size_t slackCount = 0;  // of those that had slack when they were filed
 
     // Of the update under way.
-    std::uint32_t calmCount = 0;         // of those that may settle with slack
-    std::vector<std::uint32_t> changed;  // indices of those with slack, unless they are many
+    std::uint32_t calmCount = 0;                // of those that may settle with slack
+    std::vector<std::uint32_t> changedEntries;  // of the resting table, unless they are many
     bool areManyChanged = false;
     std::uint32_t stayedCount = 0;  // Table::order() of what rested before, below this
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + tremors.capacity() * sizeof(tremors[0]) +
-               changed.capacity() * sizeof(changed[0]);
+               changedEntries.capacity() * sizeof(changedEntries[0]);
     }
 };
 

@@ -155,13 +155,14 @@ void Store<Scalar>::followSettled() {
         return;
     }
     settling->areManyChanged = proxies.settledChanged > tables.resting.size() / kMany;
-    settling->changed.clear();
+    settling->changedEntries.clear();
     if (settling->areManyChanged || proxies.settledChanged == 0) {
         return;
     }
     for (const std::uint32_t proxyIndex : proxies.waiting) {
-        if (proxies.records[proxyIndex].hasSlack) {
-            settling->changed.push_back(proxyIndex);
+        const Record& record = proxies.records[proxyIndex];
+        if (record.hasSlack) {
+            settling->changedEntries.push_back(record.listedAt);
         }
     }
 }
@@ -174,12 +175,20 @@ void Store<Scalar>::refreshSettled(ParallelFor parallelFor) {
         return;
     }
     const Scalar* const corners = proxies.records.data()->box.min().data();
-    if (isRestFiledNow() || settling->areManyChanged) {
+    if (settling->areManyChanged) {
         table.refreshAll(corners, Record::kStride, parallelFor);
         return;
     }
-    for (const std::uint32_t proxyIndex : settling->changed) {
-        table.refresh(proxies.records[proxyIndex].listedAt, corners, Record::kStride);
+    for (const std::uint32_t entry : settling->changedEntries) {
+        table.refresh(entry, corners, Record::kStride);
+    }
+}
+
+template <class Scalar>
+void Store<Scalar>::refreshFiled(ParallelFor parallelFor) {
+    if (tables.resting.isSettled() && isRestFiledNow()) {
+        tables.resting.refreshAll(proxies.records.data()->box.min().data(), Record::kStride,
+                                  parallelFor);
     }
 }
 

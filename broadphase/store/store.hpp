@@ -250,8 +250,9 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// How far it may move at most from where it is filed [m]; 0 for not at all.
     [[nodiscard]] Scalar mostSlack(const Box& box) const noexcept;
     [[nodiscard]] Scalar slackOf(std::uint32_t proxyIndex) const noexcept;
-    /// Searches of their table see the settled ones where they are now.
+    /// Searches of their table see the settled ones where they are now; and again once it has been filed.
     void refreshSettled(ParallelFor parallelFor);
+    void refreshFiled(ParallelFor parallelFor);
     void keepFiledBoxes() noexcept;
     /// Idle proxies leave the mobile ones when enough have gathered, or enough others have left rest, to
     /// be worth filing the resting ones anew. Returns whether any did.

@@ -73,23 +73,23 @@ protected:
         return found;
     }
 
-    /// Of pairs of entries that overlapped, but for every third one of which the opposite is said.
-    static std::vector<std::uint32_t> turnedOf(std::span<const IndexPair> ofEntries,
-                                               const Table<Scalar>& table, const Boxes& moved) {
-        std::vector<IndexPair> pairs;
+    /// Of some pairs of boxes, of every third one of which it is said that they did not overlap.
+    static std::vector<std::uint32_t> turnedOf(std::vector<IndexPair> pairs,
+                                               const Table<Scalar>& moved) {
+        std::erase_if(
+            pairs, [&](const IndexPair& pair) { return std::max(pair.a, pair.b) >= moved.size(); });
         std::vector<std::uint8_t> overlapped;
-        for (const auto [a, b] : ofEntries) {
-            overlapped.push_back(pairs.size() % 3 == 0 ? 0 : 1);
-            pairs.push_back({table.order()[a], table.order()[b]});
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            overlapped.push_back(i % 3 == 0 ? 0 : 1);
         }
         std::vector<std::uint32_t> turned(pairs.size());
-        constexpr std::size_t kStride = sizeof(Aabb<Scalar>) / sizeof(Scalar);
-        turned.resize(kernels<Scalar>().selectTurned(
-            pairs.data(), overlapped.data(), 0, static_cast<std::uint32_t>(pairs.size()),
-            moved[0].min().data(), kStride, turned.data()));
+        turned.resize(kernels<Scalar>().selectTurned(pairs.data(), overlapped.data(), 0,
+                                                     static_cast<std::uint32_t>(pairs.size()),
+                                                     moved.columns().data(), turned.data()));
         std::size_t next = 0;
         for (std::uint32_t i = 0; i < pairs.size(); ++i) {  // by the definition
-            if (overlaps(moved[pairs[i].a], moved[pairs[i].b]) != (overlapped[i] != 0)) {
+            const bool overlap = overlaps(moved.box(pairs[i].a), moved.box(pairs[i].b));
+            if (overlap != (overlapped[i] != 0)) {
                 EXPECT_LT(next, turned.size());
                 EXPECT_EQ(next < turned.size() ? turned[next] : ~0U, i);
                 ++next;
@@ -132,7 +132,7 @@ protected:
                         copyOf(querySwept(table, movedTable, movedBoxes)),
                         {},
                         {},
-                        turnedOf(joined.pairs(), table, moved)};
+                        turnedOf(copyOf(joined), movedTable)};
         results.apart.resize(joined.size());
         results.apart.resize(kernels<Scalar>().selectApart(joined.pairs().data(), joined.size(),
                                                            table.order().data(), movedBoxes.data(),
