@@ -56,8 +56,8 @@ template <class Scalar>
 void releaseAfterPeak(PairState<Scalar>& pairs) noexcept {
     const KnownPairs& known = pairs.known;
     const WatchedPairs& watched = pairs.watched;
-    // Searches make room for some candidates of each proxy.
-    const std::size_t count = pairs.store.listedCount() + watched.amongMobile.size() +
+    // Searches make room for some candidates of each mobile proxy.
+    const std::size_t count = pairs.proxies.mobile.size() + watched.amongMobile.size() +
                               watched.toResting.size() + known.size();
     const std::size_t room =
         watched.amongMobile.capacity() + watched.toResting.capacity() + known.capacity();

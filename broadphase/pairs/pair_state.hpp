@@ -37,8 +37,9 @@ struct SettledPairs {
     // The numbers of each entry's pairs, and where they begin; made when few entries change.
     std::vector<std::uint32_t> pairsOf;
     std::vector<std::uint32_t> firstOf;
-    std::vector<std::uint32_t> turned;  // scratch
-    std::vector<PairKey> begun;         // scratch
+    std::vector<std::uint32_t> turned;      // scratch
+    std::vector<std::size_t> turnedInPart;  // the same
+    std::vector<PairKey> begun;             // scratch
 
     void clear() noexcept {
         pairs.clear();
@@ -47,7 +48,7 @@ struct SettledPairs {
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + pairs.memoryBytes() + overlapped.capacity() +
-               begun.capacity() * sizeof(PairKey) +
+               begun.capacity() * sizeof(PairKey) + turnedInPart.capacity() * sizeof(std::size_t) +
                (pairsOf.capacity() + firstOf.capacity() + turned.capacity()) *
                    sizeof(std::uint32_t);
     }

@@ -16,6 +16,9 @@
 
 namespace hashphase::detail {
 
+// So many pairs are tested by a thread at a time.
+inline constexpr std::uint32_t kTurnedPart = 8192;
+
 // Lists the numbers of each entry's pairs.
 inline void listPairsOf(SettledPairs& settled, std::size_t entryCount) {
     settled.firstOf.assign(entryCount + 1, 0);
@@ -32,9 +35,9 @@ inline void listPairsOf(SettledPairs& settled, std::size_t entryCount) {
     }
 }
 
-// Selects the pairs that have come to overlap or to be apart; of those of few entries perhaps some twice.
-template <class Scalar>
-void selectTurned(PairState<Scalar>& pairs) {
+// Calls take(i), which notes it, for each of the pairs that has come to overlap or to be apart.
+template <class Scalar, class Take>
+void forEachTurned(PairState<Scalar>& pairs, ParallelFor parallelFor, const Take& take) {
     const Table<Scalar>& table = pairs.tables.resting;
     const Columns<Scalar> columns = table.columns();
     SettledPairs& settled = *pairs.watched.settled;
@@ -43,14 +46,24 @@ void selectTurned(PairState<Scalar>& pairs) {
                                               settled.overlapped.data(), first, last,
                                               columns.data(), turned);
     };
+    const auto count = static_cast<std::uint32_t>(settled.pairs.size());
     if (pairs.store.settling->areManyChanged) {
-        const auto count = static_cast<std::uint32_t>(settled.pairs.size());
-        settled.turned.resize(count);
-        settled.turned.resize(select(0, count, settled.turned.data()));
         pairs.cost.pairsWatched += count;
+        settled.turned.resize(count);
+        settled.turnedInPart.resize((count + kTurnedPart - 1) / kTurnedPart);
+        parallelFor(settled.turnedInPart.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (auto part = static_cast<std::uint32_t>(begin); part < end; ++part) {
+                const std::uint32_t first = part * kTurnedPart;
+                settled.turnedInPart[part] = select(first, std::min(first + kTurnedPart, count),
+                                                    settled.turned.data() + first);
+            }
+        });
+        for (std::uint32_t part = 0; part < settled.turnedInPart.size(); ++part) {
+            const auto turned = std::span(settled.turned).subspan(part * std::size_t{kTurnedPart});
+            std::ranges::for_each(turned.first(settled.turnedInPart[part]), take);
+        }
         return;
     }
-    settled.turned.clear();
     const std::vector<std::uint32_t>& changed = pairs.store.settling->changedEntries;
     if (settled.firstOf.empty() && !changed.empty()) {
         listPairsOf(settled, table.size());
@@ -60,7 +73,7 @@ void selectTurned(PairState<Scalar>& pairs) {
         for (std::uint32_t k = settled.firstOf[entry]; k < end; ++k) {
             std::uint32_t turned = 0;
             if (select(settled.pairsOf[k], settled.pairsOf[k] + 1, &turned) > 0) {
-                settled.turned.push_back(turned);
+                take(turned);
             }
         }
         pairs.cost.pairsWatched += end - settled.firstOf[entry];
@@ -70,7 +83,7 @@ void selectTurned(PairState<Scalar>& pairs) {
 // Once their table has been refreshed: finds which of the pairs have begun, which findBegun() asks about, and
 // ended.
 template <class Scalar>
-void findTurned(PairState<Scalar>& pairs) {
+void findTurned(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     if (pairs.watched.settled == nullptr) {
         return;
     }
@@ -80,21 +93,16 @@ void findTurned(PairState<Scalar>& pairs) {
     if (!table.isSettled() || pairs.proxies.settledChanged == 0) {
         return;
     }
-    selectTurned(pairs);
-    for (const std::uint32_t i : settled.turned) {
+    forEachTurned(pairs, parallelFor, [&](std::uint32_t i) {
         const auto [a, b] = settled.pairs.pairs()[i];
         const PairKey key = pairKey(table.proxyIndex(a), table.proxyIndex(b));
-        const bool overlapNow = pairs.areAtRest(key) && pairs.overlapNow(key);
-        if (settled.overlapped[i] == (overlapNow ? 1 : 0)) {
-            continue;  // found twice
-        }
-        settled.overlapped[i] = overlapNow ? 1 : 0;
-        if (overlapNow) {
+        settled.overlapped[i] ^= 1;
+        if (settled.overlapped[i] != 0) {
             settled.begun.push_back(key);
         } else if (pairs.areAtRest(key)) {
             pairs.call.ended.push_back(key);
         }
-    }
+    });
 }
 
 // Finds what overlaps in the resting table, may pair, and has slack. Where few have it, they look for the others.
@@ -158,6 +166,7 @@ void listSettled(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     // Room for what later updates list, so that these take no memory.
     ensureCapacity(settled.overlapped, settled.pairs.size());
     ensureCapacity(settled.turned, settled.pairs.size());
+    ensureCapacity(settled.turnedInPart, settled.pairs.size() / kTurnedPart + 1);
     ensureCapacity(settled.pairsOf, 2 * settled.pairs.size());
     ensureCapacity(settled.firstOf, table.size() + std::size_t{1});
     for (const auto [a, b] : settled.pairs.pairs()) {

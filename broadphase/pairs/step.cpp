@@ -23,7 +23,7 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
             }
             store.refreshSettled(parallelFor);
             if (pairs != nullptr) {
-                findTurned(*pairs);
+                findTurned(*pairs, parallelFor);
             }
             const bool someSettled = store.settleIdle(parallelFor);
             if (pairs != nullptr) {

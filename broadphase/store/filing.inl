@@ -163,6 +163,7 @@ void Store<Scalar>::fileResting(ParallelFor parallelFor) {
     if (slackCount > 0) {
         tables.resting.settle();
     }
+    freeArrays(frame.boxes);  // of all that rest, which are seldom filed
     tables.idleUpdates = 0;
     tables.restingKinds = 0;
     for (std::uint32_t entry = 0; entry < tables.resting.size(); ++entry) {
