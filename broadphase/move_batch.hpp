@@ -4,9 +4,9 @@
 // Moves of many proxies on several threads, with the result of as many single moves in their order.
 //
 // One thread writes a proxy's record. What a mobile proxy changes beside its record is a count and an entry in
-// the list of changes: each part of the batch keeps its own, and the parts are joined in order; of a settled one
-// it is the same. Any other proxy that moves (at rest without slack, sweeping, with a NaN before or after) waits for Store::move(), which the join calls in
-// its turn.
+// the list of changes: each part of the batch keeps its own, and the parts are joined in order; of one that moves
+// within its slack it is the same. Any other proxy that moves (at rest, sweeping, with a NaN before or after) waits for
+// Store::move(), which the join calls in its turn.
 
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/store/store.hpp>

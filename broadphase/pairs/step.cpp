@@ -12,7 +12,7 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
                 ParallelFor parallelFor) {
     store.releaseAfterPeak();
     try {
-        store.followSettled();
+        store.listMovedSettled();
         if (pairs != nullptr) {
             beginUpdate(*pairs);
         }

@@ -149,7 +149,7 @@ auto Store<Scalar>::filedBox(std::uint32_t entry) const noexcept -> Box {
 }
 
 template <class Scalar>
-void Store<Scalar>::followSettled() {
+void Store<Scalar>::listMovedSettled() {
     constexpr std::size_t kMany = 4;
     if (settling == nullptr) {
         return;

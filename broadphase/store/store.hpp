@@ -220,8 +220,8 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
 
     // --- The passes of an update, see step.hpp ---------------------------------------------------
 
-    /// Lists which settled ones have moved within their slack.
-    void followSettled();
+    /// Lists which settled ones have moved within their slack, unless they are many.
+    void listMovedSettled();
     /// Copies the mobile boxes side by side.
     enum class StageFor : std::uint8_t { update, repair, queries };
     void stage(ParallelFor parallelFor, StageFor what);
