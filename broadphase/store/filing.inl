@@ -44,6 +44,7 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
     if (observes && frame.someAreCalm.exchange(false)) {
         makeTremors();
     }
+    const bool areShifted = !proxies.boxesAtUpdate.empty();
     const bool someRefuse = proxies.groupKinds.someRefuse();  // else nobody asks for kinds
     frame.mobileKinds = 0;
     frame.changedKinds = 0;
@@ -61,7 +62,8 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
             frame.now[i] =
                 padded(what == StageFor::queries ? record.box : proxies.standingBox(record));
             if (hasPairs) {
-                frame.before[i] = padded(boxAtUpdate(proxies.mobile[i]));
+                frame.before[i] = areShifted ? padded(boxAtUpdate(proxies.mobile[i]))
+                                             : padded(proxies.standingBefore(record));
             }
             const bool isIdle = this->isIdle(record);
             const bool maySettle = observes && observe(proxies.mobile[i], record);

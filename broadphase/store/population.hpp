@@ -134,6 +134,10 @@ struct HASHPHASE_BROADPHASE_EXPORT Population {
     [[nodiscard]] const Box& standingBox(const Record<Scalar>& record) const noexcept {
         return record.residency == Residency::sweeping ? nowhere() : record.box;
     }
+    /// The same at the last update, of what has no slack.
+    [[nodiscard]] const Box& standingBefore(const Record<Scalar>& record) const noexcept {
+        return record.changedAt == updateNumber ? record.before : standingBox(record);
+    }
     [[nodiscard]] static const Box& nowhere() noexcept {
         static const Box box = nanBox<Scalar>();
         return box;

@@ -192,11 +192,10 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// standingBox() at the last update, in present coordinates; NaN when the index had no proxy.
     [[nodiscard]] Box before(std::uint32_t proxyIndex) const noexcept {
         const Record& record = proxies.records[proxyIndex];
-        if (record.changedAt != proxies.updateNumber) {
-            return proxies.standingBox(record);
+        if (record.hasSlack && record.changedAt == proxies.updateNumber && !isRestFiledNow()) {
+            return tables.resting.boxBefore(record.listedAt);
         }
-        return record.hasSlack && !isRestFiledNow() ? tables.resting.boxBefore(record.listedAt)
-                                                    : record.before;
+        return proxies.standingBefore(record);
     }
     /// Whether the update under way has filed what rests. Until its end, records of those with slack have their
     /// boxes before.
