@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace hashphase::detail {
@@ -131,19 +132,13 @@ public:
         if (!ray_.isExpressible() || !level.hasCells()) {
             return read(level, true);
         }
-        std::size_t axis = 0;
-        std::int32_t count = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (!setCells(level, i)) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!setCells(level, axis)) {
                 return true;
             }
-            if (const std::int32_t parts = partsAlong(i); parts > count) {
-                axis = i;
-                count = parts;
-            }
         }
-        return costsMoreThanFullScan(level, axis, count) ? read(level, true)
-                                                         : walkParts(level, axis, count);
+        const Cut cut = cheapestCut(level);
+        return cut.cost > level.count() ? read(level, true) : walkParts(level, cut);
     }
 
     KernelCost cost{};
@@ -154,12 +149,14 @@ private:
         std::uint32_t proxyIndex;
     };
 
-    // Cells of a part: along x, where a row is read at a time, more.
-    static constexpr std::array<std::int32_t, 3> kCells{8, 2, 2};
-
-    [[nodiscard]] std::int32_t partsAlong(std::size_t axis) noexcept {
-        return (ray_.part().highCell[axis] - ray_.part().lowCell[axis]) / kCells[axis] + 1;
-    }
+    /// The ray in `count` parts of so many cells along an axis, and what it costs to read them, in boxes tested.
+    struct Cut {
+        std::size_t axis;
+        std::int32_t cells;
+        std::int32_t count;
+        double cost;
+        double boxesOfPart;
+    };
 
     // Sets the part's cells along an axis to those around its bounds. Returns whether there are any.
     [[nodiscard]] bool setCells(const Level<Scalar>& level, std::size_t axis) noexcept {
@@ -169,28 +166,56 @@ private:
         return part.lowCell[axis] <= part.highCell[axis];
     }
 
-    // By how the ray slopes, without a look at what is filed in the cells.
-    [[nodiscard]] bool costsMoreThanFullScan(const Level<Scalar>& level, std::size_t axis,
-                                             std::int32_t count) noexcept {
+    // By how the ray slopes, without a look at what is filed in the cells: along the axis that has most parts,
+    // in parts as long as pays where few boxes are.
+    [[nodiscard]] Cut cheapestCut(const Level<Scalar>& level) noexcept {
+        // Of a part: along x, where a row is read at a time, more.
+        constexpr std::array<std::int32_t, 3> kFewestCells{8, 2, 2};
+        constexpr std::int32_t kLonger = 4;
+        constexpr double kManyBoxes = 64;
         const RayPart<Scalar>& part = ray_.part();
+        std::size_t axis = 0;
+        for (std::size_t i = 1; i < 3; ++i) {
+            const auto partsAlong = [&](std::size_t k) {
+                return (part.highCell[k] - part.lowCell[k]) / kFewestCells[k];
+            };
+            axis = partsAlong(i) > partsAlong(axis) ? i : axis;
+        }
+        Cut best = cutAlong(level, axis, kFewestCells[axis]);
+        while (best.count > 1 && best.boxesOfPart < kManyBoxes) {
+            const Cut longer = cutAlong(level, axis, kLonger * best.cells);
+            if (longer.cost >= best.cost) {
+                break;
+            }
+            best = longer;
+        }
+        return best;
+    }
+
+    [[nodiscard]] Cut cutAlong(const Level<Scalar>& level, std::size_t axis,
+                               std::int32_t cells) noexcept {
+        constexpr double kBoxesPerPart = 16;
         const auto extent = [&](std::size_t i) {
-            return static_cast<double>(part.highCell[i] - part.lowCell[i]) + 1;
+            return static_cast<double>(ray_.part().highCell[i] - ray_.part().lowCell[i]) + 1;
         };
         // Rows of a hashed level that are so long go through some buckets more than once.
         if (!level.isDense() && axis == 0 && extent(0) > level.bucketCount) {
-            return true;
+            return {axis, cells, 1, std::numeric_limits<double>::infinity(), 0};
         }
-        constexpr double kBoxesPerPart = 16;
+        const std::int32_t count =
+            (ray_.part().highCell[axis] - ray_.part().lowCell[axis]) / cells + 1;
+        const double share = 1.0 / count;
         const auto extentOfPart = [&](std::size_t i) {
-            return std::min(extent(i), i == axis ? kCells[i] : extent(i) / count + 2);
+            return std::min(extent(i), i == axis ? cells : extent(i) * share + 2);
         };
         const double rows = extentOfPart(1) * extentOfPart(2);
         const double boxes = rows * extentOfPart(0) * level.count() / level.bucketCount;
-        return count * (kBoxesPerPart + rows * static_cast<double>(kBoxesPerRun) + boxes) >
-               level.count();
+        const double costOfPart = kBoxesPerPart + rows * static_cast<double>(kBoxesPerRun) + boxes;
+        return {axis, cells, count, count * costOfPart, boxes};
     }
 
-    [[nodiscard]] bool walkParts(const Level<Scalar>& level, std::size_t axis, std::int32_t count) {
+    [[nodiscard]] bool walkParts(const Level<Scalar>& level, const Cut& cut) {
+        const auto [axis, cells, count] = std::tuple(cut.axis, cut.cells, cut.count);
         const std::int32_t first = ray_.part().lowCell[axis];
         const std::int32_t last = ray_.part().highCell[axis];
         const double size = 1 / static_cast<double>(level.inverseCellSize[axis]);
@@ -200,8 +225,8 @@ private:
                               (std::abs(origin) + farthest + size);
         for (std::int32_t i = 0; i < count; ++i) {
             const std::int32_t k = ray_.way(axis) < 0 ? count - 1 - i : i;
-            const std::int32_t low = first + k * kCells[axis];
-            const std::int32_t high = std::min(low + kCells[axis] - 1, last);
+            const std::int32_t low = first + k * cells;
+            const std::int32_t high = std::min(low + cells - 1, last);
             const Stretch all{0, ray_.lastFor(limit_)};
             const Stretch part =
                 count == 1 ? all
