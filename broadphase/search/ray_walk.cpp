@@ -137,8 +137,17 @@ public:
                 return true;
             }
         }
-        const Cut cut = cheapestCut(level);
-        return cut.cost > level.count() ? read(level, true) : walkParts(level, cut);
+        const Sieve flat = bestSieve(level, true);
+        const Cut cut = cheapestCut(level, flat.cost);
+        if (cut.cost > kLeastSieved * level.count()) {
+            const Sieve any = bestSieve(level, false);
+            if (cut.cost > any.cost * level.count()) {
+                ray_.part().sieve = any.axis;
+                return read(level, true);
+            }
+        }
+        ray_.part().sieve = flat.axis;
+        return walkParts(level, cut);
     }
 
     KernelCost cost{};
@@ -158,6 +167,36 @@ private:
         double boxesOfPart;
     };
 
+    /// An axis on which few boxes of long runs are near the ray: eight at once, or sixteen, are passed by if none
+    /// is. With what it costs to test a box.
+    struct Sieve {
+        std::uint32_t axis;
+        double cost;
+    };
+    static constexpr double kLeastSieved = 0.25;
+
+    [[nodiscard]] Sieve bestSieve(const Level<Scalar>& level, bool onlyFlat) noexcept {
+        constexpr double kBoxesAtOnce = 16;
+        const RayPart<Scalar>& part = ray_.part();
+        Sieve best{RayPart<Scalar>::kNoSieve, 1};
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            const bool isFlat = level.inverseCellSize[axis] == 0;
+            if (onlyFlat && !isFlat) {
+                continue;
+            }
+            const double near = isFlat ? static_cast<double>(part.bounds[axis + 3] -
+                                                             part.bounds[axis] + level.largestEdge)
+                                       : double{2} + part.highCell[axis] - part.lowCell[axis];
+            const double all = isFlat
+                                   ? static_cast<double>(level.highest[axis] - level.lowest[axis])
+                                   : double{1} + level.high[axis] - level.low[axis];
+            if (kLeastSieved * all + kBoxesAtOnce * near < best.cost * all) {
+                best = {axis, kLeastSieved + kBoxesAtOnce * near / all};
+            }
+        }
+        return best;
+    }
+
     // Sets the part's cells along an axis to those around its bounds. Returns whether there are any.
     [[nodiscard]] bool setCells(const Level<Scalar>& level, std::size_t axis) noexcept {
         RayPart<Scalar>& part = ray_.part();
@@ -168,7 +207,7 @@ private:
 
     // By how the ray slopes, without a look at what is filed in the cells: along the axis that has most parts,
     // in parts as long as pays where few boxes are.
-    [[nodiscard]] Cut cheapestCut(const Level<Scalar>& level) noexcept {
+    [[nodiscard]] Cut cheapestCut(const Level<Scalar>& level, double costOfBox) noexcept {
         // Of a part: along x, where a row is read at a time, more.
         constexpr std::array<std::int32_t, 3> kFewestCells{8, 2, 2};
         constexpr std::int32_t kLonger = 4;
@@ -181,9 +220,9 @@ private:
             };
             axis = partsAlong(i) > partsAlong(axis) ? i : axis;
         }
-        Cut best = cutAlong(level, axis, kFewestCells[axis]);
+        Cut best = cutAlong(level, axis, kFewestCells[axis], costOfBox);
         while (best.count > 1 && best.boxesOfPart < kManyBoxes) {
-            const Cut longer = cutAlong(level, axis, kLonger * best.cells);
+            const Cut longer = cutAlong(level, axis, kLonger * best.cells, costOfBox);
             if (longer.cost >= best.cost) {
                 break;
             }
@@ -192,8 +231,8 @@ private:
         return best;
     }
 
-    [[nodiscard]] Cut cutAlong(const Level<Scalar>& level, std::size_t axis,
-                               std::int32_t cells) noexcept {
+    [[nodiscard]] Cut cutAlong(const Level<Scalar>& level, std::size_t axis, std::int32_t cells,
+                               double costOfBox) noexcept {
         constexpr double kBoxesPerPart = 16;
         const auto extent = [&](std::size_t i) {
             return static_cast<double>(ray_.part().highCell[i] - ray_.part().lowCell[i]) + 1;
@@ -209,7 +248,7 @@ private:
             return std::min(extent(i), i == axis ? cells : extent(i) * share + 2);
         };
         const double rows = extentOfPart(1) * extentOfPart(2);
-        const double boxes = rows * extentOfPart(0) * level.count() / level.bucketCount;
+        const double boxes = costOfBox * rows * extentOfPart(0) * level.count() / level.bucketCount;
         const double costOfPart = kBoxesPerPart + rows * static_cast<double>(kBoxesPerRun) + boxes;
         return {axis, cells, count, count * costOfPart, boxes};
     }
