@@ -147,7 +147,7 @@ public:
             }
         }
         ray_.part().sieve = flat.axis;
-        return walkParts(level, cut);
+        return cut.count == 1 ? read(level, false) : walkParts(level, cut);
     }
 
     KernelCost cost{};
@@ -267,10 +267,8 @@ private:
             const std::int32_t low = first + k * cells;
             const std::int32_t high = std::min(low + cells - 1, last);
             const Stretch all{0, ray_.lastFor(limit_)};
-            const Stretch part =
-                count == 1 ? all
-                           : ray_.between(origin + low * size - margin,
-                                          origin + (high + 2.0) * size + margin, axis, all);
+            const Stretch part = ray_.between(origin + low * size - margin,
+                                              origin + (high + 2.0) * size + margin, axis, all);
             if (part.first > part.last) {
                 continue;
             }
