@@ -130,7 +130,7 @@ public:
         const Stretch all{0, ray_.lastFor(limit_)};
         ray_.bound(all);
         if (!ray_.isExpressible() || !level.hasCells()) {
-            return read(level, true);
+            return read(level, true, RayPart<Scalar>::kNoSieve);
         }
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!setCells(level, axis)) {
@@ -142,12 +142,10 @@ public:
         if (cut.cost > kLeastSieved * level.count()) {
             const Sieve any = bestSieve(level, false);
             if (cut.cost > any.cost * level.count()) {
-                ray_.part().sieve = any.axis;
-                return read(level, true);
+                return read(level, true, any.axis);
             }
         }
-        ray_.part().sieve = flat.axis;
-        return cut.count == 1 ? read(level, false) : walkParts(level, cut);
+        return cut.count == 1 ? read(level, false, flat.axis) : walkParts(level, cut, flat.axis);
     }
 
     KernelCost cost{};
@@ -253,7 +251,7 @@ private:
         return {axis, cells, count, count * costOfPart, boxes};
     }
 
-    [[nodiscard]] bool walkParts(const Level<Scalar>& level, const Cut& cut) {
+    [[nodiscard]] bool walkParts(const Level<Scalar>& level, const Cut& cut, std::uint32_t sieve) {
         const auto [axis, cells, count] = std::tuple(cut.axis, cut.cells, cut.count);
         const std::int32_t first = ray_.part().lowCell[axis];
         const std::int32_t last = ray_.part().highCell[axis];
@@ -277,15 +275,16 @@ private:
             ray_.part().highCell[axis] = high;
             const bool isEmpty =
                 !setCells(level, (axis + 1) % 3) || !setCells(level, (axis + 2) % 3);
-            if (!isEmpty && !read(level, false)) {
+            if (!isEmpty && !read(level, false, sieve)) {
                 return false;
             }
         }
         return true;
     }
 
-    [[nodiscard]] bool read(const Level<Scalar>& level, bool readsAll) {
+    [[nodiscard]] bool read(const Level<Scalar>& level, bool readsAll, std::uint32_t sieve) {
         ray_.aim();
+        ray_.part().sieve = sieve;
         ray_.part().last = static_cast<Scalar>(ray_.lastFor(limit_));
         PairSink sink{found_.data(), found_.data(), &grow, this};
         sink.end += found_.size();
