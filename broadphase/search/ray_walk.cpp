@@ -13,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 namespace hashphase::detail {
@@ -138,14 +137,15 @@ public:
             }
         }
         const Sieve flat = bestSieve(level, true);
-        const Cut cut = cheapestCut(level, flat.cost);
+        const Cut cut = cheapestCut(level, flat);
         if (cut.cost > kLeastSieved * level.count()) {
             const Sieve any = bestSieve(level, false);
             if (cut.cost > any.cost * level.count()) {
                 return read(level, true, any.axis);
             }
         }
-        return cut.count == 1 ? read(level, false, flat.axis) : walkParts(level, cut, flat.axis);
+        return cut.count == 1 && holdsFew(level, cut) ? read(level, false, flat.axis)
+                                                      : walkParts(level, cut);
     }
 
     KernelCost cost{};
@@ -156,6 +156,13 @@ private:
         std::uint32_t proxyIndex;
     };
 
+    /// An axis on which few boxes of long runs are near the ray: eight at once, or sixteen, are passed by if none
+    /// is. With what it costs to test a box.
+    struct Sieve {
+        std::uint32_t axis;
+        double cost;
+    };
+
     /// The ray in `count` parts of so many cells along an axis, and what it costs to read them, in boxes tested.
     struct Cut {
         std::size_t axis;
@@ -163,14 +170,15 @@ private:
         std::int32_t count;
         double cost;
         double boxesOfPart;
+        Sieve sieve;
     };
 
-    /// An axis on which few boxes of long runs are near the ray: eight at once, or sixteen, are passed by if none
-    /// is. With what it costs to test a box.
-    struct Sieve {
-        std::uint32_t axis;
-        double cost;
-    };
+    // Cells of a part, at least: along x, where a row is read at a time, more.
+    static constexpr std::array<std::int32_t, 3> kFewestCells{8, 2, 2};
+    static constexpr std::int32_t kLonger = 4;
+    // Of a part that has more cells: what is near is to be offered before what is far is read.
+    static constexpr double kFewBoxes = 64;
+
     static constexpr double kLeastSieved = 0.25;
 
     [[nodiscard]] Sieve bestSieve(const Level<Scalar>& level, bool onlyFlat) noexcept {
@@ -205,11 +213,7 @@ private:
 
     // By how the ray slopes, without a look at what is filed in the cells: along the axis that has most parts,
     // in parts as long as pays where few boxes are.
-    [[nodiscard]] Cut cheapestCut(const Level<Scalar>& level, double costOfBox) noexcept {
-        // Of a part: along x, where a row is read at a time, more.
-        constexpr std::array<std::int32_t, 3> kFewestCells{8, 2, 2};
-        constexpr std::int32_t kLonger = 4;
-        constexpr double kManyBoxes = 64;
+    [[nodiscard]] Cut cheapestCut(const Level<Scalar>& level, const Sieve& sieve) noexcept {
         const RayPart<Scalar>& part = ray_.part();
         std::size_t axis = 0;
         for (std::size_t i = 1; i < 3; ++i) {
@@ -218,9 +222,9 @@ private:
             };
             axis = partsAlong(i) > partsAlong(axis) ? i : axis;
         }
-        Cut best = cutAlong(level, axis, kFewestCells[axis], costOfBox);
-        while (best.count > 1 && best.boxesOfPart < kManyBoxes) {
-            const Cut longer = cutAlong(level, axis, kLonger * best.cells, costOfBox);
+        Cut best = cutAlong(level, axis, kFewestCells[axis], sieve);
+        while (best.count > 1 && best.boxesOfPart < kFewBoxes) {
+            const Cut longer = cutAlong(level, axis, kLonger * best.cells, sieve);
             if (longer.cost >= best.cost) {
                 break;
             }
@@ -230,14 +234,14 @@ private:
     }
 
     [[nodiscard]] Cut cutAlong(const Level<Scalar>& level, std::size_t axis, std::int32_t cells,
-                               double costOfBox) noexcept {
+                               const Sieve& sieve) noexcept {
         constexpr double kBoxesPerPart = 16;
         const auto extent = [&](std::size_t i) {
             return static_cast<double>(ray_.part().highCell[i] - ray_.part().lowCell[i]) + 1;
         };
         // Rows of a hashed level that are so long go through some buckets more than once.
         if (!level.isDense() && axis == 0 && extent(0) > level.bucketCount) {
-            return {axis, cells, 1, std::numeric_limits<double>::infinity(), 0};
+            return {axis, cells, 1, std::numeric_limits<double>::infinity(), 0, sieve};
         }
         const std::int32_t count =
             (ray_.part().highCell[axis] - ray_.part().lowCell[axis]) / cells + 1;
@@ -246,13 +250,34 @@ private:
             return std::min(extent(i), i == axis ? cells : extent(i) * share + 2);
         };
         const double rows = extentOfPart(1) * extentOfPart(2);
-        const double boxes = costOfBox * rows * extentOfPart(0) * level.count() / level.bucketCount;
+        const double boxes =
+            sieve.cost * rows * extentOfPart(0) * level.count() / level.bucketCount;
         const double costOfPart = kBoxesPerPart + rows * static_cast<double>(kBoxesPerRun) + boxes;
-        return {axis, cells, count, count * costOfPart, boxes};
+        return {axis, cells, count, count * costOfPart, boxes, sieve};
     }
 
-    [[nodiscard]] bool walkParts(const Level<Scalar>& level, const Cut& cut, std::uint32_t sieve) {
-        const auto [axis, cells, count] = std::tuple(cut.axis, cut.cells, cut.count);
+    // Whether the part has no more cells than it must, or few boxes in them, but for those behind which a hashed row
+    // wraps around.
+    [[nodiscard]] bool holdsFew(const Level<Scalar>& level, const Cut& cut) noexcept {
+        const RayPart<Scalar>& part = ray_.part();
+        if (part.highCell[cut.axis] - part.lowCell[cut.axis] < kFewestCells[cut.axis]) {
+            return true;
+        }
+        const std::uint32_t length =
+            static_cast<std::uint32_t>(part.highCell[0] - part.lowCell[0]) + 1;
+        std::uint32_t boxes = 0;
+        for (std::int32_t z = part.lowCell[2]; z <= part.highCell[2]; ++z) {
+            for (std::int32_t y = part.lowCell[1]; y <= part.highCell[1]; ++y) {
+                const std::uint32_t first = level.bucket(part.lowCell[0], {y, z});
+                const std::uint32_t end = std::min(first + length, level.bucketCount);
+                boxes += level.bucketStart[end] - level.bucketStart[first];
+            }
+        }
+        return boxes * cut.sieve.cost <= kFewBoxes;
+    }
+
+    [[nodiscard]] bool walkParts(const Level<Scalar>& level, const Cut& cut) {
+        const std::size_t axis = cut.axis;
         const std::int32_t first = ray_.part().lowCell[axis];
         const std::int32_t last = ray_.part().highCell[axis];
         const double size = 1 / static_cast<double>(level.inverseCellSize[axis]);
@@ -260,24 +285,29 @@ private:
         const double farthest = std::max(std::abs(first), std::abs(last) + 2) * size;
         const double margin = 8 * static_cast<double>(std::numeric_limits<Scalar>::epsilon()) *
                               (std::abs(origin) + farthest + size);
-        for (std::int32_t i = 0; i < count; ++i) {
-            const std::int32_t k = ray_.way(axis) < 0 ? count - 1 - i : i;
-            const std::int32_t low = first + k * cells;
-            const std::int32_t high = std::min(low + cells - 1, last);
+        std::int32_t cells = cut.cells;
+        for (std::int32_t left = last - first + 1; left > 0;) {
+            const std::int32_t some = std::min(cells, left);
+            const std::int32_t low = ray_.way(axis) < 0 ? first + left - some : last + 1 - left;
+            const std::int32_t high = low + some - 1;
             const Stretch all{0, ray_.lastFor(limit_)};
             const Stretch part = ray_.between(origin + low * size - margin,
                                               origin + (high + 2.0) * size + margin, axis, all);
-            if (part.first > part.last) {
-                continue;
+            if (part.first <= part.last) {
+                ray_.bound(part);
+                ray_.part().lowCell[axis] = low;
+                ray_.part().highCell[axis] = high;
+                const bool isEmpty =
+                    !setCells(level, (axis + 1) % 3) || !setCells(level, (axis + 2) % 3);
+                if (!isEmpty && !holdsFew(level, cut)) {
+                    cells = std::max(some / kLonger, kFewestCells[axis]);
+                    continue;
+                }
+                if (!isEmpty && !read(level, false, cut.sieve.axis)) {
+                    return false;
+                }
             }
-            ray_.bound(part);
-            ray_.part().lowCell[axis] = low;
-            ray_.part().highCell[axis] = high;
-            const bool isEmpty =
-                !setCells(level, (axis + 1) % 3) || !setCells(level, (axis + 2) % 3);
-            if (!isEmpty && !read(level, false, sieve)) {
-                return false;
-            }
+            left -= some;
         }
         return true;
     }
