@@ -177,7 +177,7 @@ private:
     static constexpr std::array<std::int32_t, 3> kFewestCells{8, 2, 2};
     static constexpr std::int32_t kLonger = 4;
     // Of a part that has more cells: what is near is to be offered before what is far is read.
-    static constexpr double kFewBoxes = 64;
+    static constexpr double kFewBoxes = 128;
 
     static constexpr double kLeastSieved = 0.25;
 
@@ -223,9 +223,9 @@ private:
             axis = partsAlong(i) > partsAlong(axis) ? i : axis;
         }
         Cut best = cutAlong(level, axis, kFewestCells[axis], sieve);
-        while (best.count > 1 && best.boxesOfPart < kFewBoxes) {
+        while (best.count > 1) {
             const Cut longer = cutAlong(level, axis, kLonger * best.cells, sieve);
-            if (longer.cost >= best.cost) {
+            if (longer.cost >= best.cost || longer.boxesOfPart > kFewBoxes) {
                 break;
             }
             best = longer;
