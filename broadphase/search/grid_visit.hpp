@@ -3,6 +3,7 @@
 
 // Grid's query templates; included by grid.hpp.
 
+#include <broadphase/core/prefetch.hpp>
 #include <broadphase/core/shared_cost.hpp>
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/grid.hpp>
@@ -125,6 +126,9 @@ private:
     bool readLine(const Filing& filing) {
         const Region& region = regions[0];
         const auto take = [&](std::span<const std::uint32_t> proxyIndices) {
+            for (const std::uint32_t proxyIndex : proxyIndices) {
+                detail::prefetch(&store.proxies.records[proxyIndex]);
+            }
             // Whatever is listed in a table may have left it.
             const bool goesOn = offerIndices(
                 proxyIndices, [&](auto proxyIndex) { return isThere(filing, proxyIndex); },

@@ -129,21 +129,23 @@ public:
         const Stretch all{0, ray_.lastFor(limit_)};
         ray_.bound(all);
         if (!ray_.isExpressible() || !level.hasCells()) {
-            return read(level, true);
+            return read(level, true, RayPart<Scalar>::kNoSieve);
         }
-        std::size_t axis = 0;
-        std::int32_t count = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (!setCells(level, i)) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!setCells(level, axis)) {
                 return true;
             }
-            if (const std::int32_t parts = partsAlong(i); parts > count) {
-                axis = i;
-                count = parts;
+        }
+        const Sieve flat = bestSieve(level, true);
+        const Cut cut = cheapestCut(level, flat);
+        if (cut.cost > kLeastSieved * level.count()) {
+            const Sieve any = bestSieve(level, false);
+            if (cut.cost > any.cost * level.count()) {
+                return read(level, true, any.axis);
             }
         }
-        return costsMoreThanFullScan(level, axis, count) ? read(level, true)
-                                                         : walkParts(level, axis, count);
+        return cut.count == 1 && holdsFew(level, cut) ? read(level, false, flat.axis)
+                                                      : walkParts(level, cut);
     }
 
     KernelCost cost{};
@@ -154,11 +156,51 @@ private:
         std::uint32_t proxyIndex;
     };
 
-    // Cells of a part: along x, where a row is read at a time, more.
-    static constexpr std::array<std::int32_t, 3> kCells{8, 2, 2};
+    /// An axis on which few boxes of long runs are near the ray: eight at once, or sixteen, are passed by if none
+    /// is. With what it costs to test a box.
+    struct Sieve {
+        std::uint32_t axis;
+        double cost;
+    };
 
-    [[nodiscard]] std::int32_t partsAlong(std::size_t axis) noexcept {
-        return (ray_.part().highCell[axis] - ray_.part().lowCell[axis]) / kCells[axis] + 1;
+    /// The ray in `count` parts of so many cells along an axis, and what it costs to read them, in boxes tested.
+    struct Cut {
+        std::size_t axis;
+        std::int32_t cells;
+        std::int32_t count;
+        double cost;
+        double boxesOfPart;
+        Sieve sieve;
+    };
+
+    // Cells of a part, at least: along x, where a row is read at a time, more.
+    static constexpr std::array<std::int32_t, 3> kFewestCells{8, 2, 2};
+    static constexpr std::int32_t kLonger = 4;
+    // Of a part that has more cells: what is near is to be offered before what is far is read.
+    static constexpr double kFewBoxes = 128;
+
+    static constexpr double kLeastSieved = 0.25;
+
+    [[nodiscard]] Sieve bestSieve(const Level<Scalar>& level, bool onlyFlat) noexcept {
+        constexpr double kBoxesAtOnce = 16;
+        const RayPart<Scalar>& part = ray_.part();
+        Sieve best{RayPart<Scalar>::kNoSieve, 1};
+        for (std::uint32_t axis = 0; axis < 3; ++axis) {
+            const bool isFlat = level.inverseCellSize[axis] == 0;
+            if (onlyFlat && !isFlat) {
+                continue;
+            }
+            const double near = isFlat ? static_cast<double>(part.bounds[axis + 3] -
+                                                             part.bounds[axis] + level.largestEdge)
+                                       : double{2} + part.highCell[axis] - part.lowCell[axis];
+            const double all = isFlat
+                                   ? static_cast<double>(level.highest[axis] - level.lowest[axis])
+                                   : double{1} + level.high[axis] - level.low[axis];
+            if (kLeastSieved * all + kBoxesAtOnce * near < best.cost * all) {
+                best = {axis, kLeastSieved + kBoxesAtOnce * near / all};
+            }
+        }
+        return best;
     }
 
     // Sets the part's cells along an axis to those around its bounds. Returns whether there are any.
@@ -169,28 +211,73 @@ private:
         return part.lowCell[axis] <= part.highCell[axis];
     }
 
-    // By how the ray slopes, without a look at what is filed in the cells.
-    [[nodiscard]] bool costsMoreThanFullScan(const Level<Scalar>& level, std::size_t axis,
-                                             std::int32_t count) noexcept {
+    // By how the ray slopes, without a look at what is filed in the cells: along the axis that has most parts,
+    // in parts as long as pays where few boxes are.
+    [[nodiscard]] Cut cheapestCut(const Level<Scalar>& level, const Sieve& sieve) noexcept {
         const RayPart<Scalar>& part = ray_.part();
+        std::size_t axis = 0;
+        for (std::size_t i = 1; i < 3; ++i) {
+            const auto partsAlong = [&](std::size_t k) {
+                return (part.highCell[k] - part.lowCell[k]) / kFewestCells[k];
+            };
+            axis = partsAlong(i) > partsAlong(axis) ? i : axis;
+        }
+        Cut best = cutAlong(level, axis, kFewestCells[axis], sieve);
+        while (best.count > 1) {
+            const Cut longer = cutAlong(level, axis, kLonger * best.cells, sieve);
+            if (longer.cost >= best.cost || longer.boxesOfPart > kFewBoxes) {
+                break;
+            }
+            best = longer;
+        }
+        return best;
+    }
+
+    [[nodiscard]] Cut cutAlong(const Level<Scalar>& level, std::size_t axis, std::int32_t cells,
+                               const Sieve& sieve) noexcept {
+        constexpr double kBoxesPerPart = 16;
         const auto extent = [&](std::size_t i) {
-            return static_cast<double>(part.highCell[i] - part.lowCell[i]) + 1;
+            return static_cast<double>(ray_.part().highCell[i] - ray_.part().lowCell[i]) + 1;
         };
         // Rows of a hashed level that are so long go through some buckets more than once.
         if (!level.isDense() && axis == 0 && extent(0) > level.bucketCount) {
-            return true;
+            return {axis, cells, 1, std::numeric_limits<double>::infinity(), 0, sieve};
         }
-        constexpr double kBoxesPerPart = 16;
+        const std::int32_t count =
+            (ray_.part().highCell[axis] - ray_.part().lowCell[axis]) / cells + 1;
+        const double share = 1.0 / count;
         const auto extentOfPart = [&](std::size_t i) {
-            return std::min(extent(i), i == axis ? kCells[i] : extent(i) / count + 2);
+            return std::min(extent(i), i == axis ? cells : extent(i) * share + 2);
         };
         const double rows = extentOfPart(1) * extentOfPart(2);
-        const double boxes = rows * extentOfPart(0) * level.count() / level.bucketCount;
-        return count * (kBoxesPerPart + rows * static_cast<double>(kBoxesPerRun) + boxes) >
-               level.count();
+        const double boxes =
+            sieve.cost * rows * extentOfPart(0) * level.count() / level.bucketCount;
+        const double costOfPart = kBoxesPerPart + rows * static_cast<double>(kBoxesPerRun) + boxes;
+        return {axis, cells, count, count * costOfPart, boxes, sieve};
     }
 
-    [[nodiscard]] bool walkParts(const Level<Scalar>& level, std::size_t axis, std::int32_t count) {
+    // Whether the part has no more cells than it must, or few boxes in them, but for those behind which a hashed row
+    // wraps around.
+    [[nodiscard]] bool holdsFew(const Level<Scalar>& level, const Cut& cut) noexcept {
+        const RayPart<Scalar>& part = ray_.part();
+        if (part.highCell[cut.axis] - part.lowCell[cut.axis] < kFewestCells[cut.axis]) {
+            return true;
+        }
+        const std::uint32_t length =
+            static_cast<std::uint32_t>(part.highCell[0] - part.lowCell[0]) + 1;
+        std::uint32_t boxes = 0;
+        for (std::int32_t z = part.lowCell[2]; z <= part.highCell[2]; ++z) {
+            for (std::int32_t y = part.lowCell[1]; y <= part.highCell[1]; ++y) {
+                const std::uint32_t first = level.bucket(part.lowCell[0], {y, z});
+                const std::uint32_t end = std::min(first + length, level.bucketCount);
+                boxes += level.bucketStart[end] - level.bucketStart[first];
+            }
+        }
+        return boxes * cut.sieve.cost <= kFewBoxes;
+    }
+
+    [[nodiscard]] bool walkParts(const Level<Scalar>& level, const Cut& cut) {
+        const std::size_t axis = cut.axis;
         const std::int32_t first = ray_.part().lowCell[axis];
         const std::int32_t last = ray_.part().highCell[axis];
         const double size = 1 / static_cast<double>(level.inverseCellSize[axis]);
@@ -198,32 +285,36 @@ private:
         const double farthest = std::max(std::abs(first), std::abs(last) + 2) * size;
         const double margin = 8 * static_cast<double>(std::numeric_limits<Scalar>::epsilon()) *
                               (std::abs(origin) + farthest + size);
-        for (std::int32_t i = 0; i < count; ++i) {
-            const std::int32_t k = ray_.way(axis) < 0 ? count - 1 - i : i;
-            const std::int32_t low = first + k * kCells[axis];
-            const std::int32_t high = std::min(low + kCells[axis] - 1, last);
+        std::int32_t cells = cut.cells;
+        for (std::int32_t left = last - first + 1; left > 0;) {
+            const std::int32_t some = std::min(cells, left);
+            const std::int32_t low = ray_.way(axis) < 0 ? first + left - some : last + 1 - left;
+            const std::int32_t high = low + some - 1;
             const Stretch all{0, ray_.lastFor(limit_)};
-            const Stretch part =
-                count == 1 ? all
-                           : ray_.between(origin + low * size - margin,
-                                          origin + (high + 2.0) * size + margin, axis, all);
-            if (part.first > part.last) {
-                continue;
+            const Stretch part = ray_.between(origin + low * size - margin,
+                                              origin + (high + 2.0) * size + margin, axis, all);
+            if (part.first <= part.last) {
+                ray_.bound(part);
+                ray_.part().lowCell[axis] = low;
+                ray_.part().highCell[axis] = high;
+                const bool isEmpty =
+                    !setCells(level, (axis + 1) % 3) || !setCells(level, (axis + 2) % 3);
+                if (!isEmpty && !holdsFew(level, cut)) {
+                    cells = std::max(some / kLonger, kFewestCells[axis]);
+                    continue;
+                }
+                if (!isEmpty && !read(level, false, cut.sieve.axis)) {
+                    return false;
+                }
             }
-            ray_.bound(part);
-            ray_.part().lowCell[axis] = low;
-            ray_.part().highCell[axis] = high;
-            const bool isEmpty =
-                !setCells(level, (axis + 1) % 3) || !setCells(level, (axis + 2) % 3);
-            if (!isEmpty && !read(level, false)) {
-                return false;
-            }
+            left -= some;
         }
         return true;
     }
 
-    [[nodiscard]] bool read(const Level<Scalar>& level, bool readsAll) {
+    [[nodiscard]] bool read(const Level<Scalar>& level, bool readsAll, std::uint32_t sieve) {
         ray_.aim();
+        ray_.part().sieve = sieve;
         ray_.part().last = static_cast<Scalar>(ray_.lastFor(limit_));
         PairSink sink{found_.data(), found_.data(), &grow, this};
         sink.end += found_.size();

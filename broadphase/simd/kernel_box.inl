@@ -105,7 +105,11 @@ private:
 template <class Pack, class Scalar>
 class RayPartLanes {
 public:
-    explicit RayPartLanes(const RayPart<Scalar>& part) : last_(Pack::broadcast(part.last)) {
+    explicit RayPartLanes(const RayPart<Scalar>& part)
+        : sieve_(part.sieve), last_(Pack::broadcast(part.last)) {
+        const std::uint32_t sieve = part.sieve % 3;
+        low_ = Pack::broadcast(part.bounds[sieve]);
+        high_ = Pack::broadcast(part.bounds[sieve + 3]);
         for (int k = 0; k < 3; ++k) {
             lowFrom_[k] = Pack::broadcast(part.lowFrom[k]);
             highFrom_[k] = Pack::broadcast(part.highFrom[k]);
@@ -124,8 +128,18 @@ public:
     }
 
 private:
+    [[nodiscard]] bool areAllFar(const Scalar* const* columns, std::uint32_t first) const {
+        const auto min = Pack::load(columns[sieve_] + first);
+        const auto max = Pack::load(columns[sieve_ + 3] + first);
+        return Pack::bits(Pack::bitAnd(Pack::lessEqual(Pack::least(min, max), high_),
+                                       Pack::lessEqual(low_, Pack::greatest(min, max)))) == 0;
+    }
+
     [[nodiscard]] std::uint32_t maskOfPack(const Scalar* const* columns,
                                            std::uint32_t first) const {
+        if (sieve_ != RayPart<Scalar>::kNoSieve && areAllFar(columns, first)) {
+            return 0;
+        }
         auto enter = Pack::broadcast(0);
         auto leave = last_;
         for (int k = 0; k < 3; ++k) {
@@ -146,6 +160,9 @@ private:
     typename Pack::Numbers lowFrom_[3];
     typename Pack::Numbers highFrom_[3];
     typename Pack::Numbers inverse_[3];
+    std::uint32_t sieve_;
+    typename Pack::Numbers low_;  // along it
+    typename Pack::Numbers high_;
     typename Pack::Numbers last_;
 };
 

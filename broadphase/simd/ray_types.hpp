@@ -43,6 +43,9 @@ struct RayPart {
     Scalar bounds[6];
     std::int32_t lowCell[3];
     std::int32_t highCell[3];
+    // An axis on which few of the boxes that are read overlap the bounds, or none.
+    static constexpr std::uint32_t kNoSieve = 3;
+    std::uint32_t sieve = kNoSieve;
 };
 
 /// Where a kernel brings what a ray may meet: take(sink, indices, count) takes that of one block,

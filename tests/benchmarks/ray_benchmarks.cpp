@@ -333,13 +333,17 @@ std::vector<Benchmark> rayStepBenchmarks() {
         std::string_view name;
         std::string_view description;
         DrawRay draw;
+        std::vector<std::string_view> scenes;
     };
+    const std::vector<Length> lengths{
+        {"short", "from boxes to 3 edges below", rayBelowBox, {"uniform", "trembling"}},
+        {"medium", "of 30 edges", rayOf30Edges, {"uniform", "trembling"}},
+        {"long", "from box to box", rayBetweenBoxes, {"uniform", "trembling"}},
+        {"shot", "of up to 100 m across the terrain", rayOverTerrain, {"paper"}},
+        {"stray", "of up to 100 m, most of which hit nothing", rayFromNowhere, {"piles"}}};
     std::vector<Benchmark> all;
-    for (const auto& [name, description, draw] :
-         {Length{"short", "from boxes to 3 edges below", rayBelowBox},
-          Length{"medium", "of 30 edges", rayOf30Edges},
-          Length{"long", "from box to box", rayBetweenBoxes}}) {
-        for (const std::string_view scene : {"uniform", "trembling"}) {
+    for (const auto& [name, description, draw, scenes] : lengths) {
+        for (const std::string_view scene : scenes) {
             for (const std::size_t count : {1, 4, 40, 500}) {
                 for (const Moves moves : {Moves::all, Moves::allTimed}) {
                     const bool isTimed = moves == Moves::allTimed;
@@ -354,8 +358,8 @@ std::vector<Benchmark> rayStepBenchmarks() {
                                    .sizes = {300, 1'000, 3'000, 30'000},
                                    .onRequest = true,
                                    .admits = answersQueries,
-                                   .make = [=, makeScene = sceneNamed(scene)](std::size_t objects,
-                                                                              std::uint64_t seed) {
+                                   .make = [=, draw = draw, makeScene = sceneNamed(scene)](
+                                               std::size_t objects, std::uint64_t seed) {
                                        return std::make_unique<RayWorkload>(
                                            makeScene(objects, seed), Question{}, draw, moves, count,
                                            ~seed);

@@ -107,6 +107,53 @@ TYPED_TEST(RayWalkTest, IsExactWhereBoxesAreOfAllSizesFarApartOrFlat) {
     this->expectLikeBruteForce(200, -5, 5);
 }
 
+// Along one axis, or two, few boxes are near a ray. Among them are inverted ones, which reach back from where they
+// begin, and rays are as thick as a box, or end where one begins.
+TYPED_TEST(RayWalkTest, PassesByOnlyWhatItMissesWherePilesAreFarApart) {
+    for (int flat = 0; flat < 3; ++flat) {
+        for (const std::size_t pileSize : {20U, 60U, 400U}) {
+            this->boxes_.clear();
+            for (int pile = 0; pile < 20; ++pile) {
+                Vector3<double> corner = this->random_.pointIn(-5000, 5000);
+                corner[flat] = 0;
+                for (const Aabb<TypeParam>& box : drawBoxes<TypeParam>(
+                         this->random_, pileSize, boxesIn<TypeParam>(0, 6, 0.25, 0.75))) {
+                    this->boxes_.push_back(box);
+                    this->boxes_.back().translate(corner.cast<TypeParam>());
+                }
+            }
+            for (std::size_t i = 0; i < this->boxes_.size(); i += 10) {
+                const auto axis = static_cast<Eigen::Index>(i / 10 % 3);
+                std::swap(this->boxes_[i].min()[axis], this->boxes_[i].max()[axis]);
+            }
+            test::fill(this->table_, this->boxes_);
+            for (std::size_t i = 0; i < 100; ++i) {
+                const Aabb<TypeParam>& target = this->boxes_[7 * i % this->boxes_.size()];
+                const Vector3<TypeParam> to = i % 2 == 0 ? target.min() : target.center();
+                const Vector3<TypeParam> off =
+                    this->random_.pointIn(-100, 100).template cast<TypeParam>();
+                this->expectLikeBruteForce({to + off, to});
+                const auto half = Vector3<TypeParam>::Constant(static_cast<TypeParam>(i % 3));
+                this->expectLikeBruteForce({to, to + off, {-half, half}});
+                Vector3<TypeParam> along = to;
+                along[static_cast<Eigen::Index>(i % 3)] += off[0];
+                this->expectLikeBruteForce({along, to});
+            }
+        }
+    }
+}
+
+TYPED_TEST(RayWalkTest, ReadsARowInOnePartWhereFewBoxesAre) {
+    for (int i = 0; i < 1000; ++i) {
+        this->boxes_.push_back(boxAround<TypeParam>({8.0 * i, 0, 0}, {0.5, 0.5, 0.5}));
+    }
+    test::fill(this->table_, this->boxes_);
+    EXPECT_EQ(this->walk({{-3, 0, 0}, {197, 0, 0}}).size(), 25U);
+    EXPECT_LE(this->cost_.rowsVisited, 4U);
+    EXPECT_LE(this->cost_.boxesTested, 100U);
+    EXPECT_EQ(this->walk({{-3, 0, 0}, {7900, 0, 0}}).size(), 988U);
+}
+
 // Many share a cell, of which some are inverted: what is sorted along an axis must not hide them.
 TYPED_TEST(RayWalkTest, FindsInvertedBoxesInACrowdedCell) {
     this->boxes_ = drawBoxes<TypeParam>(this->random_, 2000, cubesIn<TypeParam>(-50, 50, 0.01));
