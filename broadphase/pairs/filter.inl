@@ -79,6 +79,10 @@ void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallel
     std::vector<char>& accepted = pairs.call.accepted;
     const std::vector<ProxyPair>& askedPairs = pairs.call.askedPairs;
     const Pile* const pile = pairs.known.pile.get();
+    accepted.assign(asked.size(), 0);
+    if (asked.empty()) {
+        return;
+    }
     pairs.sort(pairs.call.asked);
     pairs.sort(pairs.call.standing);
     const auto numberIfSampled = [pile](PairKey key) {
@@ -87,7 +91,6 @@ void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallel
     listAskedPairs(pairs, parallelFor, [&](PairKey key) {
         return pairs.mayPairNow(key) && numberIfSampled(key) == FlatSet::kNone;
     });
-    accepted.assign(asked.size(), 0);
     std::size_t answers = askedPairs.size();
     {
         const QueryScope scope(&pairs.store, QueryScope::Changes::forbidden);
@@ -170,6 +173,9 @@ template <class Scalar>
                                  ParallelFor parallelFor = serialFor) noexcept {
     const auto list = [&](const std::vector<PairKey>& keys, std::vector<ProxyPair>& reported) {
         reported.resize(keys.size());  // there is room
+        if (keys.empty()) {
+            return;
+        }
         parallelForNoexcept(parallelFor, keys.size(), kPairGrain,
                             [&](std::size_t begin, std::size_t end) {
                                 for (std::size_t i = begin; i < end; ++i) {

@@ -3,6 +3,7 @@
 
 #include <broadphase/pairs/begun.inl>
 #include <broadphase/pairs/ended.inl>
+#include <broadphase/pairs/few.inl>
 #include <broadphase/pairs/update.inl>
 
 namespace hashphase::detail {
@@ -11,12 +12,17 @@ template <class Scalar>
 UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filter,
                 ParallelFor parallelFor) {
     store.releaseAfterPeak();
+    bool stayListed = false;
     try {
         store.followSettled();
         if (pairs != nullptr) {
             beginUpdate(*pairs);
         }
-        for (bool isDone = !store.mustFile(); !isDone;) {
+        stayListed = store.haveFewMoved() && (pairs == nullptr || areOnlyWatched(*pairs));
+        if (stayListed && (pairs == nullptr || !compareFew(*pairs))) {
+            return store.endUpdate();
+        }
+        for (bool isDone = stayListed || !store.mustFile(); !isDone;) {
             store.stage(parallelFor, Store<Scalar>::StageFor::update);
             if (pairs != nullptr) {
                 findEnded(*pairs, parallelFor);
@@ -40,10 +46,11 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
         throw;
     }
     // From here on nothing takes memory, and so nothing throws.
+    const bool isFiled = store.mustFile() && !stayListed;
     if (pairs != nullptr) {
-        publish(*pairs);
+        publish(*pairs, isFiled);
     }
-    if (store.mustFile()) {
+    if (isFiled) {
         store.relistMobile();
     }
     return store.endUpdate();

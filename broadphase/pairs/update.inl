@@ -100,7 +100,8 @@ void askAndMakeRoom(PairState<Scalar>& pairs, PairFilter filter, ParallelFor par
 
 // Takes what was found for known.
 template <class Scalar>
-void publish(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-escape)
+void publish(PairState<Scalar>& pairs,
+             bool isFiled) noexcept {  // NOLINT(bugprone-exception-escape)
     KnownPairs& known = pairs.known;
     for (const PairKey key : pairs.call.ended) {
         pairs.endPair(key);
@@ -115,7 +116,7 @@ void publish(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-
     for (const PairKey key : pairs.call.lapsed) {
         known.forgetRefused(key);
     }
-    if (pairs.store.mustFile()) {
+    if (isFiled) {
         known.swept.advance();
         pairs.lastUpdate.take(pairs.tables.mobile);
     }

@@ -146,6 +146,19 @@ std::size_t moveWithin(const Scalar* corners, std::size_t stride, const std::uin
 }
 
 template <class Scalar>
+void overlapRows(const Scalar* corners, std::size_t stride, const std::uint32_t* indices,
+                 std::size_t count, PaddedBox<Scalar>* boxes, std::uint32_t* rows) {
+    for (std::size_t i = 0; i < count; ++i) {
+        padCorners(corners + stride * indices[i], boxes[i]);
+        std::uint32_t row = 0;
+        for (std::size_t k = i; k-- > 0;) {
+            row = 2 * row + (isApart(boxes[i], boxes[k]) ? 0 : 1);
+        }
+        rows[i] = row;
+    }
+}
+
+template <class Scalar>
 constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinLevel<Scalar>,
                                    &queryLevel<Scalar>,
@@ -159,6 +172,7 @@ constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &findRange<Scalar>,
                                    &selectApart<Scalar>,
                                    &moveWithin<Scalar>,
+                                   &overlapRows<Scalar>,
                                    &selectTurned<Scalar>,
                                    &countWithin<Scalar>,
                                    &countGroupsWithin<Scalar>,

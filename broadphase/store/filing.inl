@@ -27,6 +27,21 @@ std::size_t worthRefiling(std::size_t restingCount) {
 
 }  // namespace
 
+template <class Scalar>
+bool Store<Scalar>::haveFewMoved() const noexcept {
+    const std::size_t mobileCount = proxies.mobile.size();
+    const bool haveMoved = cost.changed > 0 && mobileCount == proxies.mobileAtUpdate &&
+                           proxies.removed.count == 0 && proxies.removedImmediate.count == 0 &&
+                           proxies.woken.empty() && proxies.settledChanged == 0 &&
+                           proxies.sweeping.empty() && proxies.nanCount == 0 &&
+                           !proxies.areRegrouped && proxies.boxesAtUpdate.empty() &&
+                           !tables.mustRefileMobile.load(std::memory_order_relaxed);
+    return haveMoved && mobileCount + tables.resting.size() <= kFewProxies && !config.slack &&
+           std::ranges::none_of(proxies.mobile, [this](std::uint32_t proxyIndex) {
+               return isIdle(proxies.records[proxyIndex]);
+           });
+}
+
 // Indices that are near each other in space are near each other
 // in proxies.mobile, but anywhere in proxies.records.
 template <class Scalar>

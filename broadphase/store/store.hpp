@@ -224,6 +224,16 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
                 proxies.updateNumber - record.changedAt > config.updatesBeforeRest);
     }
 
+    /// So many proxies are sooner compared with each other than filed.
+    static constexpr std::size_t kFewProxies = 24;
+    /// Whether there are no more, and nothing has changed but where some mobile ones are, of which none is idle.
+    [[nodiscard]] bool haveFewMoved() const noexcept;
+
+    /// Whether the last update has left so few in the list of changes.
+    [[nodiscard]] bool areFewListed() const noexcept {
+        return !proxies.waiting.empty() && listedCount() <= kFewProxies;
+    }
+
     /// Whether an update has anything to file.
     [[nodiscard]] bool mustFile() const noexcept {
         return cost.changed > 0 || !proxies.woken.empty();
