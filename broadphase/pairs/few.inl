@@ -52,8 +52,8 @@ struct FewProxies {
 template <class Scalar>
 [[nodiscard]] bool areOnlyWatched(const PairState<Scalar>& pairs) noexcept {
     const KnownPairs& known = pairs.known;
-    return pairs.sweeping == nullptr && known.swept.atUpdate.empty() && !known.arePairs() &&
-           known.kept.size() == 0 && known.immediate.size() == 0;
+    return known.swept.atUpdate.empty() && !known.arePairs() && known.kept.size() == 0 &&
+           known.immediate.size() == 0;
 }
 
 template <class Scalar>
@@ -120,9 +120,8 @@ template <class Scalar>
     if (!pairs.call.ended.empty()) {
         takeOut(watched.amongMobile,
                 [&](const IndexPair& pair) { return !few.overlap(pair.a, pair.b); });
-        takeOut(watched.toResting, [&](const IndexPair& pair) {
-            return !few.overlap(few.placeOf(pair.b), pair.a);
-        });
+        takeOut(watched.toResting,
+                [&](const IndexPair& pair) { return !few.overlap(few.placeOf(pair.b), pair.a); });
     }
     if (pairs.known.refused.size() > 0) {
         pairs.known.swept.now.clear();

@@ -171,11 +171,13 @@ void applyAnswers(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-excep
 template <class Scalar>
 [[nodiscard]] PairChanges report(PairState<Scalar>& pairs, PairChangeLists& lists,
                                  ParallelFor parallelFor = serialFor) noexcept {
+    if (pairs.call.begun.empty() && pairs.call.died.empty()) {
+        lists.born.clear();
+        lists.died.clear();
+        return {};
+    }
     const auto list = [&](const std::vector<PairKey>& keys, std::vector<ProxyPair>& reported) {
         reported.resize(keys.size());  // there is room
-        if (keys.empty()) {
-            return;
-        }
         parallelForNoexcept(parallelFor, keys.size(), kPairGrain,
                             [&](std::size_t begin, std::size_t end) {
                                 for (std::size_t i = begin; i < end; ++i) {

@@ -9,8 +9,8 @@
 namespace hashphase::detail {
 
 template <class Scalar>
-UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filter,
-                ParallelFor parallelFor) {
+void step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filter,
+          ParallelFor parallelFor, UpdateCost& cost) {
     store.releaseAfterPeak();
     bool stayListed = false;
     try {
@@ -20,7 +20,8 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
         }
         stayListed = store.haveFewMoved() && (pairs == nullptr || areOnlyWatched(*pairs));
         if (stayListed && (pairs == nullptr || !compareFew(*pairs))) {
-            return store.endUpdate();
+            store.endUpdate(cost);
+            return;
         }
         for (bool isDone = stayListed || !store.mustFile(); !isDone;) {
             store.stage(parallelFor, Store<Scalar>::StageFor::update);
@@ -53,10 +54,11 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
     if (isFiled) {
         store.relistMobile();
     }
-    return store.endUpdate();
+    store.endUpdate(cost);
 }
 
-template UpdateCost step<float>(Store<float>&, PairState<float>*, PairFilter, ParallelFor);
-template UpdateCost step<double>(Store<double>&, PairState<double>*, PairFilter, ParallelFor);
+template void step<float>(Store<float>&, PairState<float>*, PairFilter, ParallelFor, UpdateCost&);
+template void step<double>(Store<double>&, PairState<double>*, PairFilter, ParallelFor,
+                           UpdateCost&);
 
 }  // namespace hashphase::detail

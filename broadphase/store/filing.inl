@@ -36,7 +36,7 @@ bool Store<Scalar>::haveFewMoved() const noexcept {
                            proxies.sweeping.empty() && proxies.nanCount == 0 &&
                            !proxies.areRegrouped && proxies.boxesAtUpdate.empty() &&
                            !tables.mustRefileMobile.load(std::memory_order_relaxed);
-    return haveMoved && mobileCount + tables.resting.size() <= kFewProxies && !config.slack &&
+    return haveMoved && areFew() &&
            std::ranges::none_of(proxies.mobile, [this](std::uint32_t proxyIndex) {
                return isIdle(proxies.records[proxyIndex]);
            });
@@ -253,12 +253,16 @@ void Store<Scalar>::relistMobile() noexcept {
 }
 
 template <class Scalar>
-UpdateCost Store<Scalar>::endUpdate() noexcept {
-    cost.resting = tables.resting.size() - tables.restingErased;
+void Store<Scalar>::endUpdate(UpdateCost& done) noexcept {
+    // Number by number: of wider reads the processor would wait for what was written last.
+    done.changed = std::exchange(cost.changed, 0);
+    done.filed = std::exchange(cost.filed, 0);
+    done.largestCell = 0;
+    done.resting = tables.resting.size() - tables.restingErased;
     double finest = std::numeric_limits<double>::infinity();
     const Reading reading = tables.reading();
     for (const Filing& filing : reading.filings()) {
-        cost.largestCell = std::max(cost.largestCell, filing.table->largestCell());
+        done.largestCell = std::max(done.largestCell, filing.table->largestCell());
         finest = std::min(finest, filing.table->finestCellSize());
     }
     proxies.woken.clear();
@@ -277,7 +281,6 @@ UpdateCost Store<Scalar>::endUpdate() noexcept {
     if (config.cellSize == 0 && !tables.mustRefileMobile.load(std::memory_order_relaxed)) {
         tables.cellSize = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
     }
-    return std::exchange(cost, {});
 }
 
 template <class Scalar>

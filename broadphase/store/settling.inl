@@ -43,7 +43,8 @@ PaddedBox<Scalar> grownBy(PaddedBox<Scalar> box, Scalar by) {
 
 template <class Scalar>
 bool Store<Scalar>::observesNow() const noexcept {
-    return maySettleWithSlack && config.slack != 0 && proxies.updateNumber % updatesObserved() == 0;
+    return maySettleWithSlack && config.slack != 0 && !areFew() &&
+           proxies.updateNumber % updatesObserved() == 0;
 }
 
 template <class Scalar>
@@ -154,6 +155,9 @@ void Store<Scalar>::followSettled() {
     constexpr std::size_t kAtOnce = 64;
     if (settling == nullptr) {
         return;
+    }
+    if (proxies.settledChanged > 0 && areFew()) {
+        wakeSettled();
     }
     Table<Scalar>& table = tables.resting;
     settling->areManyChanged = proxies.settledChanged > table.size() / kMany;
