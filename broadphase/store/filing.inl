@@ -29,15 +29,11 @@ std::size_t worthRefiling(std::size_t restingCount) {
 
 template <class Scalar>
 bool Store<Scalar>::haveFewMoved() const noexcept {
-    const std::size_t mobileCount = proxies.mobile.size();
-    const bool haveMoved = cost.changed > 0 && mobileCount == proxies.mobileAtUpdate &&
-                           proxies.removed.count == 0 && proxies.removedImmediate.count == 0 &&
-                           proxies.woken.empty() && proxies.settledChanged == 0 &&
-                           proxies.sweeping.empty() && proxies.nanCount == 0 &&
-                           !proxies.areRegrouped && proxies.boxesAtUpdate.empty() &&
-                           !tables.mustRefileMobile.load(std::memory_order_relaxed);
-    return haveMoved && areFew() &&
-           std::ranges::none_of(proxies.mobile, [this](std::uint32_t proxyIndex) {
+    const bool hasNoneComeOrWoken = proxies.mobile.size() == proxies.mobileAtUpdate;
+    const bool hasNoneGone = proxies.removed.count + proxies.removedImmediate.count == 0;
+    return cost.changed > 0 && hasNoneComeOrWoken && hasNoneGone && proxies.sweeping.empty() &&
+           !proxies.areRegrouped && !tables.mustRefileMobile.load(std::memory_order_relaxed) &&
+           areFew() && std::ranges::none_of(proxies.mobile, [this](std::uint32_t proxyIndex) {
                return isIdle(proxies.records[proxyIndex]);
            });
 }

@@ -61,12 +61,14 @@ protected:
     using World = RoomWorld<Scalar>;
     static constexpr std::size_t kFew = detail::Store<Scalar>::kFewProxies;
 
-    /// Something else than a move of a box.
-    static void changeOne(World& world) {
+    static constexpr std::uint32_t kKinds = 9;
+
+    /// Something else than a move of a box, of one of kKinds kinds.
+    static void changeOne(World& world, std::uint32_t kind) {
         Random& random = world.random;
         const std::size_t i = world.any();
         const ProxyId id = world.proxies[i].id;
-        switch (random.below(9)) {
+        switch (kind) {
             case 0:
                 world.paint(i, random.below(3));
                 world.refilter(id);
@@ -151,20 +153,23 @@ TYPED_TEST(Few, EqualBruteForceAsTheyBecomeManyAndFewAgain) {
             } else if (world.proxies.size() > aim && random.chance(0.4)) {
                 world.removeAt(world.any());
             }
-            if (random.chance(0.1) && !world.proxies.empty()) {
-                this->changeOne(world);
-            }
-            if (frame % 25 == 24) {
+            // One kind at a time, and then all.
+            const std::uint32_t kind = static_cast<std::uint32_t>(frame) / 50 % (this->kKinds + 1);
+            if (frame % 50 == 0) {
                 this->calm(world);
             }
-            const bool someStand = frame / 100 % 2 == 0;
+            const bool someStand = frame / 500 % 2 == 0;
             world.nudge(someStand ? 0.6 : 1, random.chance(0.2) ? 1 : 0.05);
+            if (random.chance(0.2) && !world.proxies.empty()) {
+                this->changeOne(world, kind < this->kKinds ? kind : random.below(this->kKinds));
+            }
+            world.nudge(0.1, 1);
             if (random.chance(0.1) && !world.proxies.empty()) {
                 world.expectQueriesLikeBruteForce(1);
             }
             world.endFrame();
         }
-        EXPECT_GT(world.comparedCount, 500U);
+        EXPECT_GT(world.comparedCount, 700U);
         EXPECT_GT(world.filedCount, 500U);
     }
 }
@@ -179,6 +184,9 @@ TYPED_TEST(Few, AreAskedAboutAndRefused) {
     world.endFrame();
     std::size_t asked = 0;
     for (int update = 0; update < 200; ++update) {
+        const std::size_t i = world.any();
+        world.paint(i, world.random.below(3));
+        world.refilter(world.proxies[i].id);
         world.nudge(0.7, 0.2);
         world.endFrame();
         asked += world.asked().size();
