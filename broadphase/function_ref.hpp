@@ -39,17 +39,30 @@ public:
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
     // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): copies are ruled out above
     FunctionRef(Callable&& callable HASHPHASE_LIFETIME_BOUND)
+    noexcept
+        : FunctionRef(callable, [](auto& called, Arguments... arguments) -> Result {
+              return called(std::forward<Arguments>(arguments)...);
+          }) {}
+
+    /// To call adapter(callable, arguments...), of a type that has no members, such as a lambda that captures
+    /// nothing.
+    template <class Callable, class Adapter>
+        requires(std::is_empty_v<Adapter>&&
+                     std::is_invocable_r_v<Result, Adapter, Callable&, Arguments...>)
+    FunctionRef(Callable&& callable HASHPHASE_LIFETIME_BOUND, Adapter /*adapter*/)
     noexcept {
         using Target = std::remove_reference_t<Callable>;
         if constexpr (std::is_function_v<Target>) {
             object_ = reinterpret_cast<void*>(&callable);
             invoke_ = [](void* object, Arguments... arguments) -> Result {
-                return reinterpret_cast<Target*>(object)(std::forward<Arguments>(arguments)...);
+                return Adapter{}(*reinterpret_cast<Target*>(object),
+                                 std::forward<Arguments>(arguments)...);
             };
         } else {
             object_ = const_cast<void*>(static_cast<const void*>(std::addressof(callable)));
             invoke_ = [](void* object, Arguments... arguments) -> Result {
-                return (*static_cast<Target*>(object))(std::forward<Arguments>(arguments)...);
+                return Adapter{}(*static_cast<Target*>(object),
+                                 std::forward<Arguments>(arguments)...);
             };
         }
     }

@@ -139,7 +139,9 @@ UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
     if (store_.hasPairs || isWithinQuery()) {
         return {};
     }
-    return detail::step<Scalar>(store_, nullptr, acceptAllPairs, parallelFor);
+    UpdateCost cost;
+    detail::step<Scalar>(store_, nullptr, acceptAllPairs, parallelFor, cost);
+    return cost;
 }
 
 // --- Accounts ------------------------------------------------------------------------------------

@@ -229,11 +229,11 @@ public:
 
     /// Ends a frame: files what changed, and puts to rest what has not changed for a while. Not for a grid
     /// with Pairs, which Pairs::update() updates, nor within a query: asserted, and does nothing. The result
-    /// does not depend on `parallelFor`. Cost: a rebuild of the mobile proxies when one of them
-    /// changed, nothing otherwise; at worst O(n log n), to sort cells that very many proxies share.
+    /// does not depend on `parallelFor`. Cost: a rebuild of the mobile proxies when one of them changed, unless
+    /// there are few; nothing otherwise; at worst O(n log n), to sort cells that very many proxies share.
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
-    /// How often the mobile proxies have been filed: once by each update that found a change, and between
+    /// How often the mobile proxies have been filed: by updates that found a change, unless of few, and between
     /// updates by queries that had read much of the list of changes.
     [[nodiscard]] std::uint64_t filingCount() const noexcept { return store_.tables.filingCount; }
 

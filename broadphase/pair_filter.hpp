@@ -18,8 +18,6 @@
 #include <cstdint>
 #include <span>
 #include <type_traits>
-#include <utility>
-#include <variant>
 
 namespace hashphase {
 
@@ -43,29 +41,29 @@ public:
 
     template <std::convertible_to<OfOne> Ask>
     PairFilter(Ask&& ask HASHPHASE_LIFETIME_BOUND) noexcept  // NOLINT: conversion is its purpose
-        : ask_(OfOne(ask)) {}
+        : ask_(ask, askEach) {}
 
     template <class Ask>
         requires(!std::is_same_v<std::remove_cvref_t<Ask>, PairFilter> &&
                  !std::convertible_to<Ask, OfOne> && std::convertible_to<Ask, OfMany>)
     PairFilter(Ask&& ask HASHPHASE_LIFETIME_BOUND)  // NOLINT: conversion is its purpose
-        : ask_(OfMany(ask)) {}
+        : ask_(ask) {}
 
     /// Asks about all pairs, in one call or one by one, and writes the answers to `accepted`, which is as
     /// long and holds zeros.
     void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
-        if (const auto* ofMany = std::get_if<OfMany>(&ask_)) {
-            (*ofMany)(asked, accepted);
-            return;
-        }
-        const auto& ofOne = std::get<OfOne>(ask_);
-        for (std::size_t i = 0; i < asked.size(); ++i) {
-            accepted[i] = ofOne(asked[i].first, asked[i].second) ? 1 : 0;
-        }
+        ask_(asked, accepted);
     }
 
 private:
-    std::variant<OfOne, OfMany> ask_;
+    static constexpr auto askEach = [](auto& ask, std::span<const ProxyPair> asked,
+                                       std::span<char> accepted) {
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            accepted[i] = ask(asked[i].first, asked[i].second) ? 1 : 0;
+        }
+    };
+
+    OfMany ask_;
 };
 
 /// The filter that refuses nothing.

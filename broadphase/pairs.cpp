@@ -46,8 +46,8 @@ template <class Scalar>
 PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & {
     HASHPHASE_ASSERT(!grid_.isWithinQuery(),
                      "An update is not begun within a query, or within the filter.");
-    const UpdateCost cost = detail::step(grid_.store(), &state_, filter, parallelFor);
-    return detail::endUpdate(state_, cost, parallelFor);
+    detail::step(grid_.store(), &state_, filter, parallelFor, state_.cost.grid);
+    return detail::endUpdate(state_, parallelFor);
 }
 
 template <class Scalar>

@@ -79,6 +79,10 @@ void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallel
     std::vector<char>& accepted = pairs.call.accepted;
     const std::vector<ProxyPair>& askedPairs = pairs.call.askedPairs;
     const Pile* const pile = pairs.known.pile.get();
+    accepted.assign(asked.size(), 0);
+    if (asked.empty()) {
+        return;
+    }
     pairs.sort(pairs.call.asked);
     pairs.sort(pairs.call.standing);
     const auto numberIfSampled = [pile](PairKey key) {
@@ -87,7 +91,6 @@ void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallel
     listAskedPairs(pairs, parallelFor, [&](PairKey key) {
         return pairs.mayPairNow(key) && numberIfSampled(key) == FlatSet::kNone;
     });
-    accepted.assign(asked.size(), 0);
     std::size_t answers = askedPairs.size();
     {
         const QueryScope scope(&pairs.store, QueryScope::Changes::forbidden);
@@ -168,6 +171,11 @@ void applyAnswers(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-excep
 template <class Scalar>
 [[nodiscard]] PairChanges report(PairState<Scalar>& pairs, PairChangeLists& lists,
                                  ParallelFor parallelFor = serialFor) noexcept {
+    if (pairs.call.begun.empty() && pairs.call.died.empty()) {
+        lists.born.clear();
+        lists.died.clear();
+        return {};
+    }
     const auto list = [&](const std::vector<PairKey>& keys, std::vector<ProxyPair>& reported) {
         reported.resize(keys.size());  // there is room
         parallelForNoexcept(parallelFor, keys.size(), kPairGrain,

@@ -3,20 +3,27 @@
 
 #include <broadphase/pairs/begun.inl>
 #include <broadphase/pairs/ended.inl>
+#include <broadphase/pairs/few.inl>
 #include <broadphase/pairs/update.inl>
 
 namespace hashphase::detail {
 
 template <class Scalar>
-UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filter,
-                ParallelFor parallelFor) {
+void step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filter,
+          ParallelFor parallelFor, UpdateCost& cost) {
     store.releaseAfterPeak();
+    bool stayListed = false;
     try {
         store.listMovedSettled();
         if (pairs != nullptr) {
             beginUpdate(*pairs);
         }
-        for (bool isDone = !store.mustFile(); !isDone;) {
+        stayListed = store.haveFewMoved() && (pairs == nullptr || areOnlyWatched(*pairs));
+        if (stayListed && (pairs == nullptr || !compareFew(*pairs))) {
+            store.endUpdate(cost);
+            return;
+        }
+        for (bool isDone = stayListed || !store.mustFile(); !isDone;) {
             store.stage(parallelFor, Store<Scalar>::StageFor::update);
             if (pairs != nullptr) {
                 findEnded(*pairs, parallelFor);
@@ -44,16 +51,18 @@ UpdateCost step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filte
         throw;
     }
     // From here on nothing takes memory, and so nothing throws.
+    const bool isFiled = store.mustFile() && !stayListed;
     if (pairs != nullptr) {
-        publish(*pairs);
+        publish(*pairs, isFiled);
     }
-    if (store.mustFile()) {
+    if (isFiled) {
         store.relistMobile();
     }
-    return store.endUpdate();
+    store.endUpdate(cost);
 }
 
-template UpdateCost step<float>(Store<float>&, PairState<float>*, PairFilter, ParallelFor);
-template UpdateCost step<double>(Store<double>&, PairState<double>*, PairFilter, ParallelFor);
+template void step<float>(Store<float>&, PairState<float>*, PairFilter, ParallelFor, UpdateCost&);
+template void step<double>(Store<double>&, PairState<double>*, PairFilter, ParallelFor,
+                           UpdateCost&);
 
 }  // namespace hashphase::detail

@@ -31,11 +31,8 @@ void beginCall(PairState<Scalar>& pairs) noexcept {
 // Where memory has run out, everything is mobile, and what the last update has left to be watched
 // are the candidates of the boxes at that time.
 template <class Scalar>
-void recover(PairState<Scalar>& pairs) {
+void recoverPairs(PairState<Scalar>& pairs) {
     Store<Scalar>& store = pairs.store;
-    if (!store.mustRebuildPairs) {
-        return;
-    }
     KnownPairs& known = pairs.known;
     known.refused.reserve(known.refusedCount());
     pairs.lastUpdate.forget();
@@ -61,6 +58,13 @@ void recover(PairState<Scalar>& pairs) {
     pairs.proxies.mobileAtUpdate = pairs.proxies.mobile.size();
     pairs.lastUpdate.take(table);
     store.mustRebuildPairs = false;
+}
+
+template <class Scalar>
+void recover(PairState<Scalar>& pairs) {
+    if (pairs.store.mustRebuildPairs) {
+        recoverPairs(pairs);
+    }
 }
 
 template <class Scalar>
@@ -100,7 +104,8 @@ void askAndMakeRoom(PairState<Scalar>& pairs, PairFilter filter, ParallelFor par
 
 // Takes what was found for known.
 template <class Scalar>
-void publish(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-escape)
+void publish(PairState<Scalar>& pairs,
+             bool isFiled) noexcept {  // NOLINT(bugprone-exception-escape)
     KnownPairs& known = pairs.known;
     for (const PairKey key : pairs.call.ended) {
         pairs.endPair(key);
@@ -115,7 +120,7 @@ void publish(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-
     for (const PairKey key : pairs.call.lapsed) {
         known.forgetRefused(key);
     }
-    if (pairs.store.mustFile()) {
+    if (isFiled) {
         known.swept.advance();
         pairs.lastUpdate.take(pairs.tables.mobile);
     }
@@ -126,9 +131,7 @@ void publish(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-
 }
 
 template <class Scalar>
-[[nodiscard]] PairChanges endUpdate(PairState<Scalar>& pairs, const UpdateCost& cost,
-                                    ParallelFor parallelFor) noexcept {
-    pairs.cost.grid = cost;
+[[nodiscard]] PairChanges endUpdate(PairState<Scalar>& pairs, ParallelFor parallelFor) noexcept {
     chooseSide(pairs, true);
     return report(pairs, pairs.updateChanges, parallelFor);
 }

@@ -149,10 +149,32 @@ void watchAll(PairState<Scalar>& pairs) {
     pairs.cost.boxesTested += cost.boxesTested;
 }
 
+template <class Scalar, class Visit>
+void forEachOverlapOfFew(const PairState<Scalar>& pairs, const Visit& visit) {
+    std::vector<std::uint32_t> alive;
+    pairs.store.forEachListed([&](std::uint32_t proxyIndex) {
+        if (pairs.proxies.isAlive(proxyIndex)) {
+            alive.push_back(proxyIndex);
+        }
+    });
+    for (std::size_t i = 0; i < alive.size(); ++i) {
+        for (std::size_t k = i + 1; k < alive.size(); ++k) {
+            const PairKey key = pairKey(alive[i], alive[k]);
+            if (pairs.overlapNow(key) && pairs.mayPairNow(key)) {
+                visit(alive[i], alive[k]);
+            }
+        }
+    }
+}
+
 // Calls visit(a, b) for every two that overlap and may pair, found from scratch.
 template <class Scalar, class Visit>
 void forEachOverlap(const PairState<Scalar>& pairs, const Visit& visit) {
     pairs.store.mendTables();
+    if (pairs.store.areFewListed()) {
+        forEachOverlapOfFew(pairs, visit);
+        return;
+    }
     const Table<Scalar>& mobile = pairs.tables.mobile;
     const Table<Scalar>& resting = pairs.tables.resting;
     const ProxyGroups* const groups = pairs.proxies.groupsOfAll();

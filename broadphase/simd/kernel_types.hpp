@@ -230,6 +230,11 @@ struct Kernels {
                                const std::uint32_t* order, const PaddedBox<Scalar>* boxes,
                                IndexPair* apart);
 
+    /// Bit k of rows[i] tells whether the boxes i and k overlap, for k < i. There are 32 at most, whose corners
+    /// are the six numbers at corners + stride * indices[i], the min corner first. `boxes` is scratch.
+    void (*overlapRows)(const Scalar* corners, std::size_t stride, const std::uint32_t* indices,
+                        std::size_t count, PaddedBox<Scalar>* boxes, std::uint32_t* rows);
+
     /// Writes the numbers of those of the pairs first to last to `turned`, which has room for all, whose
     /// boxes, by column, overlap now though overlapped[i] is 0, or do not though it is 1. Returns how many.
     std::size_t (*selectTurned)(const IndexPair* pairs, const std::uint8_t* overlapped,

@@ -18,6 +18,7 @@
 //                      mask, which has kWidth, and may write so many; reads no others
 //   WidePack<Scalar>   the same for long runs, perhaps wider
 //   isApart(a, b)      whether two padded boxes do not overlap
+//   padCorners(corners, box)  makes `box` of six numbers, the min corner first
 //   fitsEdge(level, box)  whether no edge of the padded box is longer than the level's largest
 //   quantiseCorners(level, box, low)  sets `low` to the cell of the box's min corner and returns
 //                      whether the box spans one or two cells an axis, none of them clamped
@@ -122,6 +123,19 @@ std::size_t selectTurned(const IndexPair* pairs, const std::uint8_t* overlapped,
 }
 
 template <class Scalar>
+void overlapRows(const Scalar* corners, std::size_t stride, const std::uint32_t* indices,
+                 std::size_t count, PaddedBox<Scalar>* boxes, std::uint32_t* rows) {
+    for (std::size_t i = 0; i < count; ++i) {
+        padCorners(corners + stride * indices[i], boxes[i]);
+        std::uint32_t row = 0;
+        for (std::size_t k = i; k-- > 0;) {
+            row = 2 * row + (isApart(boxes[i], boxes[k]) ? 0 : 1);
+        }
+        rows[i] = row;
+    }
+}
+
+template <class Scalar>
 constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinLevel<Scalar>,
                                    &queryLevel<Scalar>,
@@ -134,6 +148,7 @@ constexpr Kernels<Scalar> kKernels{&fileBoxes<Scalar>,
                                    &joinList<Scalar>,
                                    &findRange<Scalar>,
                                    &selectApart<Scalar>,
+                                   &overlapRows<Scalar>,
                                    &selectTurned<Scalar>,
                                    &countWithin<Scalar>,
                                    &countGroupsWithin<Scalar>,

@@ -37,6 +37,20 @@ inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
     return _mm256_movemask_pd(_mm256_and_pd(one, other)) != 0xf;
 }
 
+inline void padCorners(const float* corners, PaddedBox<float>& box) {
+    const __m128i low = _mm_castps_si128(_mm_loadu_ps(corners));
+    const __m128i high = _mm_castps_si128(_mm_loadu_ps(corners + 2));
+    _mm_store_ps(box.low, _mm_castsi128_ps(_mm_srli_si128(_mm_slli_si128(low, 4), 4)));
+    _mm_store_ps(box.high, _mm_castsi128_ps(_mm_srli_si128(high, 4)));
+}
+
+inline void padCorners(const double* corners, PaddedBox<double>& box) {
+    const __m256d high = _mm256_loadu_pd(corners + 2);
+    const __m256d none = _mm256_setzero_pd();
+    _mm256_store_pd(box.low, _mm256_blend_pd(_mm256_loadu_pd(corners), none, 0x8));
+    _mm256_store_pd(box.high, _mm256_blend_pd(_mm256_permute4x64_pd(high, 0x39), none, 0x8));
+}
+
 // The arithmetic of quantise(), axes side by side.
 
 inline bool fitsEdge(const Level<float>& level, const PaddedBox<float>& box) {

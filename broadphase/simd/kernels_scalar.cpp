@@ -35,6 +35,11 @@ bool isApart(const PaddedBox<Scalar>& a, const PaddedBox<Scalar>& b) {
             (b.low[1] <= a.high[1]) & (a.low[2] <= b.high[2]) & (b.low[2] <= a.high[2])) == 0;
 }
 
+template <class Scalar>
+void padCorners(const Scalar* corners, PaddedBox<Scalar>& box) {
+    box = {{corners[0], corners[1], corners[2], 0}, {corners[3], corners[4], corners[5], 0}};
+}
+
 inline std::uint64_t equalBytes(const std::uint8_t* bytes, std::uint8_t value) {
     std::uint64_t mask = 0;
     for (std::uint32_t k = 0; k < 64; ++k) {

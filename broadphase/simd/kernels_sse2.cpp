@@ -70,6 +70,20 @@ inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
     return _mm_movemask_pd(all) != 0x3;
 }
 
+inline void padCorners(const float* corners, PaddedBox<float>& box) {
+    const __m128i low = _mm_castps_si128(_mm_loadu_ps(corners));
+    const __m128i high = _mm_castps_si128(_mm_loadu_ps(corners + 2));
+    _mm_store_ps(box.low, _mm_castsi128_ps(_mm_srli_si128(_mm_slli_si128(low, 4), 4)));
+    _mm_store_ps(box.high, _mm_castsi128_ps(_mm_srli_si128(high, 4)));
+}
+
+inline void padCorners(const double* corners, PaddedBox<double>& box) {
+    _mm_store_pd(box.low, _mm_loadu_pd(corners));
+    _mm_store_pd(box.low + 2, _mm_load_sd(corners + 2));
+    _mm_store_pd(box.high, _mm_loadu_pd(corners + 3));
+    _mm_store_pd(box.high + 2, _mm_load_sd(corners + 5));
+}
+
 inline std::uint64_t equalBytes(const std::uint8_t* bytes, std::uint8_t value) {
     std::uint64_t mask = 0;
     for (std::uint32_t k = 0; k < 64; k += 16) {

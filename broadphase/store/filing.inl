@@ -27,6 +27,17 @@ std::size_t worthRefiling(std::size_t restingCount) {
 
 }  // namespace
 
+template <class Scalar>
+bool Store<Scalar>::haveFewMoved() const noexcept {
+    const bool hasNoneComeOrWoken = proxies.mobile.size() == proxies.mobileAtUpdate;
+    const bool hasNoneGone = proxies.removed.count + proxies.removedImmediate.count == 0;
+    return cost.changed > 0 && hasNoneComeOrWoken && hasNoneGone && proxies.sweeping.empty() &&
+           !proxies.areRegrouped && !tables.mustRefileMobile.load(std::memory_order_relaxed) &&
+           areFew() && std::ranges::none_of(proxies.mobile, [this](std::uint32_t proxyIndex) {
+               return isIdle(proxies.records[proxyIndex]);
+           });
+}
+
 // Indices that are near each other in space are near each other
 // in proxies.mobile, but anywhere in proxies.records.
 template <class Scalar>
@@ -241,12 +252,16 @@ void Store<Scalar>::relistMobile() noexcept {
 }
 
 template <class Scalar>
-UpdateCost Store<Scalar>::endUpdate() noexcept {
-    cost.resting = tables.resting.size() - tables.restingErased;
+void Store<Scalar>::endUpdate(UpdateCost& done) noexcept {
+    // Number by number: of wider reads the processor would wait for what was written last.
+    done.changed = std::exchange(cost.changed, 0);
+    done.filed = std::exchange(cost.filed, 0);
+    done.largestCell = 0;
+    done.resting = tables.resting.size() - tables.restingErased;
     double finest = std::numeric_limits<double>::infinity();
     const Reading reading = tables.reading();
     for (const Filing& filing : reading.filings()) {
-        cost.largestCell = std::max(cost.largestCell, filing.table->largestCell());
+        done.largestCell = std::max(done.largestCell, filing.table->largestCell());
         finest = std::min(finest, filing.table->finestCellSize());
     }
     if (isRestFiledNow() && tables.resting.isSettled()) {
@@ -269,7 +284,6 @@ UpdateCost Store<Scalar>::endUpdate() noexcept {
     if (config.cellSize == 0 && !tables.mustRefileMobile.load(std::memory_order_relaxed)) {
         tables.cellSize = std::isinf(finest) ? Scalar(1) : static_cast<Scalar>(finest);
     }
-    return std::exchange(cost, {});
 }
 
 template <class Scalar>

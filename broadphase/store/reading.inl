@@ -15,7 +15,7 @@
 namespace hashphase::detail {
 namespace {
 
-// So few changes are read by each query without further ado.
+// So few changes are read by each query without further ado, unless there are few proxies, which are filed soon.
 constexpr std::size_t kFewWait = 64;
 
 // A ray reads the list as dearly as so many boxes.
@@ -39,6 +39,11 @@ T& writable(const T& what) {
 template <class Scalar>
 std::uint64_t Store<Scalar>::worthFiling() const noexcept {
     constexpr std::uint64_t kThirdOfFiling = 3;  // entries of the list, for each proxy
+    constexpr std::uint64_t kThirdOfFew = 8;     // the same where these are few, ...
+    constexpr std::uint64_t kThirdOfNone = 32;   // ... which take less beforehand
+    if (areFew()) {
+        return kThirdOfNone + kThirdOfFew * proxies.waiting.size();
+    }
     return 1024 + kThirdOfFiling * (tables.mobile.size() + proxies.settledChanged);
 }
 
@@ -46,7 +51,7 @@ template <class Scalar>
 auto Store<Scalar>::beginReading(std::size_t weight) const -> Reading {
     mendTables();
     const std::size_t count = proxies.waiting.size();
-    if (count > kFewWait && !tables.isFresh.load(std::memory_order_acquire) &&
+    if ((count > kFewWait || areFewListed()) && !tables.isFresh.load(std::memory_order_acquire) &&
         countRead(weight * count) > worthFiling()) {
         writable(*this).fileFresh();
     }
@@ -56,7 +61,8 @@ auto Store<Scalar>::beginReading(std::size_t weight) const -> Reading {
 template <class Scalar>
 void Store<Scalar>::expectQueries(std::size_t count) const {
     mendTables();
-    if (proxies.waiting.size() > kFewWait && !tables.isFresh.load(std::memory_order_acquire)) {
+    if ((proxies.waiting.size() > kFewWait || areFewListed()) &&
+        !tables.isFresh.load(std::memory_order_acquire)) {
         const std::uint64_t read = tables.waitingRead.load(std::memory_order_relaxed);
         if (count > (worthFiling() - std::min(worthFiling(), read)) / proxies.waiting.size()) {
             writable(*this).fileFresh();

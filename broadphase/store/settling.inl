@@ -40,7 +40,8 @@ PaddedBox<Scalar> grownBy(PaddedBox<Scalar> box, Scalar by) {
 
 template <class Scalar>
 bool Store<Scalar>::observesNow() const noexcept {
-    return maySettleWithSlack && config.slack != 0 && proxies.updateNumber % updatesObserved() == 0;
+    return maySettleWithSlack && config.slack != 0 && !areFew() &&
+           proxies.updateNumber % updatesObserved() == 0;
 }
 
 template <class Scalar>
@@ -153,6 +154,9 @@ void Store<Scalar>::listMovedSettled() {
     constexpr std::size_t kMany = 4;
     if (settling == nullptr) {
         return;
+    }
+    if (proxies.settledChanged > 0 && areFew()) {
+        wakeSettled();
     }
     settling->areManyChanged = proxies.settledChanged > tables.resting.size() / kMany;
     settling->changedEntries.clear();

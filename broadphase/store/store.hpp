@@ -264,7 +264,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     /// Lists the mobile proxies in the order of their table, for the next time, and forgets those that
     /// have left, whose indices may be given away again.
     void relistMobile() noexcept;
-    UpdateCost endUpdate() noexcept;
+    void endUpdate(UpdateCost& done) noexcept;
     /// What is left where memory ran out, and the next update can go on from: everything is mobile.
     void wakeAll() noexcept;
     /// What pairs begin with: as if all had been added since the last update.
@@ -273,6 +273,19 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
         return record.changedAt != proxies.updateNumber && !record.isNan &&
                (record.restsAtOnce ||
                 proxies.updateNumber - record.changedAt > config.updatesBeforeRest);
+    }
+
+    /// So many proxies are sooner compared with each other than filed: they stay in the list of changes.
+    static constexpr std::size_t kFewProxies = 24;
+    /// Nor do these settle with slack, unless by a fixed one.
+    [[nodiscard]] bool areFew() const noexcept {
+        return listedCount() <= kFewProxies && !config.slack;
+    }
+    /// Whether they are few, and nothing has changed but where some mobile ones are, of which none is idle.
+    [[nodiscard]] bool haveFewMoved() const noexcept;
+    /// Whether the last update has left few in the list of changes.
+    [[nodiscard]] bool areFewListed() const noexcept {
+        return areFew() && !proxies.waiting.empty();
     }
 
     /// Whether an update has anything to file.

@@ -262,6 +262,9 @@ void PairCache::freeRetired() {
 }
 
 void PairCache::freeRetiredAsListed() {
+    if (retired_.empty()) {
+        return;
+    }
     std::vector<Retired> retired = std::move(retired_);
     retired_.clear();
     for (Retired& each : retired) {

@@ -335,6 +335,8 @@ private:
     [[nodiscard]] Freeing freeingNow() const noexcept;
 
     [[nodiscard]] bool isTold() const noexcept { return ghosts_ != nullptr || processDepth_ > 0; }
+    void exchange(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
+                  btDispatcher* dispatcher);
     void updateOneByOne(std::span<const BulletProxyPair> died,
                         std::span<const BulletProxyPair> born, btDispatcher* dispatcher);
     void prefetchAhead(std::span<const BulletProxyPair> pairs, std::size_t i) const;

@@ -30,6 +30,16 @@ void PairCache::update(std::span<const BulletProxyPair> died, std::span<const Bu
         updateOneByOne(died, born, dispatcher);
         return;
     }
+    if (!died.empty() || !born.empty()) {
+        exchange(died, born, dispatcher);
+    }
+    if (order_ == PairOrder::arrival) {
+        freeRetiredAsListed();
+    }
+}
+
+void PairCache::exchange(std::span<const BulletProxyPair> died,
+                         std::span<const BulletProxyPair> born, btDispatcher* dispatcher) {
     dropChainsIfMany(died.size());
     places_.clear();
     detail::ensureCapacity(places_, died.size());
@@ -41,9 +51,6 @@ void PairCache::update(std::span<const BulletProxyPair> died, std::span<const Bu
         throw;
     }
     closeVacant(settle(born));
-    if (order_ == PairOrder::arrival) {
-        freeRetiredAsListed();
-    }
 }
 
 void PairCache::updateOneByOne(std::span<const BulletProxyPair> died,

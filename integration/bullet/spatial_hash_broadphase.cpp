@@ -306,8 +306,12 @@ private:
 
 void SpatialHashBroadphase::apply(const PairChanges& changes, std::size_t birthsAtOnce,
                                   btDispatcher* dispatcher) {
-    PairLists lists(*this);
     try {
+        if (changes.died.empty() && changes.born.empty()) {
+            applyToCache({}, {}, dispatcher);  // which frees what is to be freed
+            return;
+        }
+        PairLists lists(*this);
         // The first births, as many as there are deaths at least, go with these, to take their places.
         findBulletPairs(changes.died, lists.died);
         std::span<const ProxyPair> born = changes.born;

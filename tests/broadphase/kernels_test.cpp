@@ -13,7 +13,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -99,10 +101,29 @@ protected:
         return turned;
     }
 
+    /// Of the first boxes, in reverse.
+    static std::vector<std::uint32_t> rowsOf(const Boxes& boxes) {
+        constexpr std::size_t kMost = 32;
+        std::array<PaddedBox<Scalar>, kMost> scratch;
+        std::vector<std::uint32_t> indices(std::min(boxes.size(), kMost));
+        std::iota(indices.rbegin(), indices.rend(), 0U);
+        std::vector<std::uint32_t> rows(indices.size());
+        constexpr std::size_t kStride = sizeof(Aabb<Scalar>) / sizeof(Scalar);
+        kernels<Scalar>().overlapRows(boxes[0].min().data(), kStride, indices.data(),
+                                      indices.size(), scratch.data(), rows.data());
+        for (std::size_t i = 0; i < indices.size(); ++i) {  // by the definition
+            for (std::size_t k = 0; k < kMost; ++k) {
+                const bool overlap = k < i && overlaps(boxes[indices[i]], boxes[indices[k]]);
+                EXPECT_EQ(rows[i] >> k & 1, overlap ? 1U : 0U) << i << " and " << k;
+            }
+        }
+        return rows;
+    }
+
     /// What all kernels make of the boxes.
     struct Results {
         std::vector<IndexPair> joined, walked, together, onWays, apart, filed;
-        std::vector<std::uint32_t> turned;
+        std::vector<std::uint32_t> turned, rows;
 
         friend bool operator==(const Results&, const Results&) = default;
     };
@@ -132,7 +153,8 @@ protected:
                         copyOf(querySwept(table, movedTable, movedBoxes)),
                         {},
                         {},
-                        turnedOf(copyOf(joined), movedTable)};
+                        turnedOf(copyOf(joined), movedTable),
+                        rowsOf(boxes)};
         results.apart.resize(joined.size());
         results.apart.resize(kernels<Scalar>().selectApart(joined.pairs().data(), joined.size(),
                                                            table.order().data(), movedBoxes.data(),

@@ -308,11 +308,11 @@ TYPED_TEST(WhoIsNear, CostsNoMoreForStraysAndSmallRadii) {
 
 // Even those at infinity.
 TYPED_TEST(WhoIsNear, FromBoxToBoxAreAllWithinInfinity) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    for (const double x : {0.0, 4.0, -kInfinity, kInfinity}) {
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    for (const double x : {0.0, 4.0, -kNoLimit, kNoLimit}) {
         this->world_.add(makeBox<TypeParam>(x, 0, 0, x, 1, 1));
     }
-    const auto infinity = static_cast<TypeParam>(kInfinity);
+    const auto infinity = static_cast<TypeParam>(kNoLimit);
     EXPECT_EQ(this->neighbours_.find(this->world_.grid, infinity).size(), 6U);
     EXPECT_EQ(this->neighbours_.find(this->world_.grid, 100).size(), 1U);
 }

@@ -192,22 +192,22 @@ TEST_F(PairCosts, OfAnUpdateAfterWhichNothingChangedIsZero) {
 
 TEST_F(PairCosts, FollowsWhatMovesNotWhatExists) {
     constexpr std::uint32_t kCount = 20000;
-    constexpr std::uint32_t kMoving = 50;
+    constexpr std::uint32_t kMovingCount = 50;
     addMany(kCount);
     for (int frame = 0; frame < 40; ++frame) {
-        for (std::uint32_t i = 0; i < kMoving; ++i) {
+        for (std::uint32_t i = 0; i < kMovingCount; ++i) {
             nudge(i * 397, 0.1);
         }
         const auto& cost = update();
         if (frame < 20) {
             continue;
         }
-        EXPECT_EQ(cost.grid.changed, kMoving);
-        EXPECT_LE(cost.grid.filed, 2 * kMoving);
-        EXPECT_GE(cost.grid.resting, kCount - 2 * kMoving);
+        EXPECT_EQ(cost.grid.changed, kMovingCount);
+        EXPECT_LE(cost.grid.filed, 2 * kMovingCount);
+        EXPECT_GE(cost.grid.resting, kCount - 2 * kMovingCount);
         // Some dozen neighbours each, where a search through all would be a million tests.
-        EXPECT_LT(cost.boxesTested, 200 * kMoving);
-        EXPECT_LT(cost.pairsWatched, 20 * kMoving);
+        EXPECT_LT(cost.boxesTested, 200 * kMovingCount);
+        EXPECT_LT(cost.pairsWatched, 20 * kMovingCount);
     }
 }
 

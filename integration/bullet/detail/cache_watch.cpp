@@ -37,10 +37,7 @@ void CacheWatch::note(const btBroadphasePair& pair) noexcept {
     }
 }
 
-void CacheWatch::prune() noexcept {
-    if (takenOut == nullptr) {
-        return;
-    }
+void CacheWatch::pruneTakenOut() noexcept {
     std::erase_if(*takenOut, [this](const BulletProxyPair& pair) {
         return !pair.isUpToDate() || cache->findPair(pair.lower(), pair.upper()) != nullptr;
     });

@@ -25,7 +25,11 @@ struct CacheWatch {
     void note(const btBroadphasePair& pair) noexcept;
 
     /// Where nobody asks, those of which a proxy is gone do not gather, nor those that are back.
-    void prune() noexcept;
+    void prune() noexcept {
+        if (takenOut != nullptr) {
+            pruneTakenOut();
+        }
+    }
 
     /// Forgets what was taken out.
     void forget() noexcept;
@@ -38,6 +42,8 @@ struct CacheWatch {
                    ? 0
                    : sizeof(*takenOut) + takenOut->capacity() * sizeof(BulletProxyPair);
     }
+
+    void pruneTakenOut() noexcept;
 
     PairCache* cache = nullptr;  // null when there is none, or it has ended
     std::unique_ptr<std::vector<BulletProxyPair>> takenOut;  // null for none
