@@ -86,16 +86,22 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void reserve(std::size_t count);
     // Inline, as calls would cost what they do.
     [[gnu::always_inline]] void move(std::uint32_t proxyIndex, const Box& box) {
+        if (!moveIfInPlace(proxyIndex, box)) {
+            moveAny(proxyIndex, box);
+        }
+    }
+    /// Returns false, and has done nothing, where moveAny() has to do it.
+    [[nodiscard, gnu::always_inline]] bool moveIfInPlace(std::uint32_t proxyIndex, const Box& box) {
         Record& record = proxies.records[proxyIndex];
         if (isSameBits(record.box, box)) {
-            return;
+            return true;
         }
         if (!movesInPlace(record, box) || tables.isFresh.load(std::memory_order_relaxed)) {
-            moveAny(proxyIndex, box);
-            return;
+            return false;
         }
         moveInPlace(record, box, cost.changed, proxies.settledChanged,
                     [&]() noexcept { proxies.waiting.push_back(proxyIndex); });
+        return true;
     }
     // By value, lest that of move() had to be in memory for it.
     void moveAny(std::uint32_t proxyIndex, Box box);

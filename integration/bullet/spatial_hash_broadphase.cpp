@@ -165,10 +165,13 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
         return;
     }
     if (!isSameBits(own->m_aabbMin, aabbMin) || !isSameBits(own->m_aabbMax, aabbMax)) {
+        if (!grid_.store().moveIfInPlace(own->id.index, toAabb(aabbMin, aabbMax))) {
+            setAnyAabb(*own, aabbMin, aabbMax, dispatcher);
+            return;
+        }
         own->m_aabbMin = aabbMin;
         own->m_aabbMax = aabbMax;
         changedKinds_ |= detail::GroupKinds::bit(own->kind);
-        grid_.move(own->id, toAabb(aabbMin, aabbMax));
     }
     if (!seen_.empty()) {
         noteSeen(*own, true);
