@@ -212,7 +212,8 @@ void LevelLayout<Scalar>::layOutDense(Level<Scalar>& level, const CellReach& rea
 }
 
 // Which cells share buckets is chance, unless things lie at equal distances: then the same chance may be that of
-// many. So some numbers of buckets are tried, until cells of a sample share no more than by chance.
+// many. So some numbers of buckets are tried, until cells of a sample share no more than by chance; where most boxes
+// are in dense cells, the first will do.
 template <class Scalar>
 void LevelLayout<Scalar>::layOutHashed(Level<Scalar>& level, const CellReach& reach,
                                        std::uint32_t count,
@@ -220,6 +221,14 @@ void LevelLayout<Scalar>::layOutHashed(Level<Scalar>& level, const CellReach& re
     constexpr std::size_t kMostSamples = 2048;
     constexpr std::uint32_t kMostTries = 8;
     level.kind = LevelKind::hashed;
+    const auto bucketCountOf = [count](std::uint32_t attempt) {
+        return 1 | static_cast<std::uint32_t>(
+                       std::max(std::uint64_t{64}, std::uint64_t{count} * (32 + attempt) / 16));
+    };
+    if (count < reach.count) {
+        numberHashed(level, reach, bucketCountOf(0));
+        return;
+    }
     cells_.clear();
     for (std::size_t i = 0; i < boxes.size(); i += 1 + boxes.size() / kMostSamples) {
         if (const std::optional<Cell> cell = cellOn(level, unpadded(boxes[i]))) {
@@ -228,10 +237,6 @@ void LevelLayout<Scalar>::layOutHashed(Level<Scalar>& level, const CellReach& re
     }
     std::sort(cells_.begin(), cells_.end());
     cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
-    const auto bucketCountOf = [count](std::uint32_t attempt) {
-        return 1 | static_cast<std::uint32_t>(
-                       std::max(std::uint64_t{64}, std::uint64_t{count} * (32 + attempt) / 16));
-    };
     std::uint32_t best = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t attempt = 0; attempt < kMostTries && least > 1.25; ++attempt) {
