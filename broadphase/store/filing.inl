@@ -165,7 +165,7 @@ template <class Scalar>
 void Store<Scalar>::fileResting(ParallelFor parallelFor) {
     std::size_t slackCount = 0;
     for (const std::uint32_t proxyIndex : frame.proxyIndices) {
-        frame.boxes.push_back(boxToFile(proxyIndex));
+        frame.boxes.push_back(padded(boxToFile(proxyIndex)));
         slackCount += proxies.records[proxyIndex].hasSlack ? 1 : 0;
     }
     if (settling != nullptr) {
@@ -176,7 +176,6 @@ void Store<Scalar>::fileResting(ParallelFor parallelFor) {
     if (slackCount > 0) {
         tables.resting.settle();
     }
-    freeArrays(frame.boxes);  // of all that rest, which are seldom filed
     tables.idleUpdates = 0;
     tables.restingKinds = 0;
     for (std::uint32_t entry = 0; entry < tables.resting.size(); ++entry) {

@@ -72,7 +72,8 @@ void Store<Scalar>::releaseAfterPeak() noexcept {
     if (peaks.isPast(std::max(listedCount(), proxies.reservedCount), room)) {
         releaseMemory();
     }
-    if (mobilePeaks.isPast(proxies.mobile.size(), frame.now.capacity())) {
+    const std::size_t staged = std::max(frame.now.capacity(), frame.boxes.capacity());
+    if (mobilePeaks.isPast(proxies.mobile.size(), staged)) {
         freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
         tables.mobile.releaseUnusedMemory();
         tables.resting.releaseUnusedMemory();

@@ -28,12 +28,9 @@ Scalar longestMove(const Aabb<Scalar>& now, const Aabb<Scalar>& before) {
 }
 
 template <class Scalar>
-PaddedBox<Scalar> grownBy(PaddedBox<Scalar> box, Scalar by) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] -= by;
-        box.high[axis] += by;
-    }
-    return box;
+Aabb<Scalar> grownBy(const Aabb<Scalar>& box, Scalar slack) {
+    const auto all = Vector3<Scalar>::Constant(slack);
+    return {box.min() - all, box.max() + all};
 }
 
 }  // namespace
@@ -135,9 +132,9 @@ Scalar Store<Scalar>::slackOf(std::uint32_t proxyIndex) const noexcept {
 
 // By as much larger as it may move.
 template <class Scalar>
-PaddedBox<Scalar> Store<Scalar>::boxToFile(std::uint32_t proxyIndex) const noexcept {
+auto Store<Scalar>::boxToFile(std::uint32_t proxyIndex) const noexcept -> Box {
     const Record& record = proxies.records[proxyIndex];
-    return record.hasSlack ? grownBy(padded(record.box), slackOf(proxyIndex)) : padded(record.box);
+    return record.hasSlack ? grownBy(record.box, slackOf(proxyIndex)) : record.box;
 }
 
 template <class Scalar>
@@ -202,7 +199,7 @@ void Store<Scalar>::keepFiledBoxes() noexcept {
     for (const std::uint32_t proxyIndex : tables.resting.proxyIndices()) {
         Record& record = proxies.records[proxyIndex];
         if (record.hasSlack) {
-            record.before = unpadded(boxToFile(proxyIndex));
+            record.before = boxToFile(proxyIndex);
         }
     }
 }

@@ -248,7 +248,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void makeTremors();
     [[nodiscard]] bool hasTremor(std::uint32_t proxyIndex) const noexcept;
     /// By which it is to be filed with what rests.
-    [[nodiscard]] PaddedBox<Scalar> boxToFile(std::uint32_t proxyIndex) const noexcept;
+    [[nodiscard]] Box boxToFile(std::uint32_t proxyIndex) const noexcept;
     /// By which the entry of the resting table is filed.
     [[nodiscard]] Box filedBox(std::uint32_t entry) const noexcept;
     [[nodiscard]] bool maySettle(std::uint32_t proxyIndex, const Record& record) const noexcept;
