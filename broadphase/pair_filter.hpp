@@ -31,7 +31,7 @@ namespace hashphase {
 /// Threads   the thread that calls Pairs
 /// Misuse    The filter may ask the grid but must not change it (asserted).
 ///
-/// For parameters only, as FunctionRef.
+/// For parameters only, as FunctionRef: it refers to what it is given, be that a FunctionRef or another one.
 class PairFilter {
 public:
     /// Gets two ids, the one with the lower index first.

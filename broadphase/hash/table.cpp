@@ -276,6 +276,7 @@ void Table<Scalar>::settle() {
 template <class Scalar>
 void Table<Scalar>::refresh(std::uint32_t entry, const Scalar* corners,
                             std::size_t stride) noexcept {
+    HASHPHASE_ASSERT(!hasNan(box(entry)), "Only an entry that was not erased can be refreshed.");
     const Scalar* const now = corners + stride * proxyIndices_[entry];
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
         settled_->before[i][entry] = std::exchange(bounds_[i][entry], now[i]);

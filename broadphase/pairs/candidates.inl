@@ -42,8 +42,8 @@ void forEachOverlapAtUpdate(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
             visit(pairKey(proxyIndex, other));
         }
     };
-    const Aabb<Scalar>& before = pairs.store.before(proxyIndex);
-    const Aabb<Scalar>& inTable = last.isOwn() ? pairs.store.boxAtUpdate(proxyIndex) : before;
+    const Aabb<Scalar> before = pairs.store.before(proxyIndex);
+    const Aabb<Scalar> inTable = last.isOwn() ? pairs.store.boxAtUpdate(proxyIndex) : before;
     forEachTouching(pairs.scratch, *last.table, inTable, visitIfTheyDid);
     forEachTouching(pairs.scratch, pairs.tables.resting, before, visitIfTheyDid);
     for (std::size_t i = last.indexedWoken; i < proxies.woken.size(); ++i) {

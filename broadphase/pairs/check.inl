@@ -99,7 +99,7 @@ template <class Scalar>
         return "The watched candidates are the overlapping ones that may pair and of which one is "
                "mobile, each once: broken.";
     }
-    if (!areSettledRight(pairs) && !pairs.store.mustRebuildPairs) {
+    if (!pairs.store.mustRebuildPairs && !areSettledRight(pairs)) {
         return "The candidates of settled proxies that overlap are listed so, each once: broken.";
     }
     if (known.count + known.refusedCount() != overlapping + swept.size() + known.kept.size()) {

@@ -104,7 +104,7 @@ void Store<Scalar>::releaseMemory() noexcept {
     shrink(proxies.groups, proxies.groups.empty() ? 0 : 2 * proxies.records.capacity());
     shrink(proxies.mobile, std::max(listedCount(), proxies.reservedCount));
     shrink(proxies.woken, proxies.mobile.capacity());
-    shrink(proxies.waiting, proxies.mobile.capacity() + proxies.removedImmediate.count);
+    shrink(proxies.waiting, proxies.mobile.capacity() + proxies.waiting.size());
     freeArrays(frame.now, frame.before, frame.proxyIndices, frame.boxes);
     settling.reset();
     moveScratch.reset();

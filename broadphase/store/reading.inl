@@ -39,8 +39,9 @@ T& writable(const T& what) {
 template <class Scalar>
 std::uint64_t Store<Scalar>::worthFiling() const noexcept {
     constexpr std::uint64_t kThirdOfFiling = 3;  // entries of the list, for each proxy
-    constexpr std::uint64_t kThirdOfFew = 8;     // the same where these are few, ...
-    constexpr std::uint64_t kThirdOfNone = 32;   // ... which take less beforehand
+    constexpr std::uint64_t kThirdOfFew =
+        8;  // the same where these are few, for each that is listed,
+    constexpr std::uint64_t kThirdOfNone = 32;  // and for all together
     if (areFew()) {
         return kThirdOfNone + kThirdOfFew * proxies.waiting.size();
     }

@@ -141,9 +141,10 @@ template <class Scalar>
 auto Store<Scalar>::filedBox(std::uint32_t entry) const noexcept -> Box {
     const std::uint32_t proxyIndex = tables.resting.proxyIndex(entry);
     const Record& record = proxies.records[proxyIndex];
-    const bool isListed =
-        record.residency == Residency::resting && record.hasSlack && !isRestFiledNow();
-    return isListed ? record.before : tables.resting.box(entry);
+    if (record.residency != Residency::resting || !record.hasSlack) {
+        return tables.resting.box(entry);
+    }
+    return isRestFiledNow() ? boxToFile(proxyIndex) : record.before;
 }
 
 template <class Scalar>

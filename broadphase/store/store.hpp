@@ -289,7 +289,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     }
     /// Whether they are few, and nothing has changed but where some mobile ones are, of which none is idle.
     [[nodiscard]] bool haveFewMoved() const noexcept;
-    /// Whether the last update has left few in the list of changes.
+    /// Whether there are few, and some are in the list of changes.
     [[nodiscard]] bool areFewListed() const noexcept {
         return areFew() && !proxies.waiting.empty();
     }

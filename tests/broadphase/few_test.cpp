@@ -103,7 +103,7 @@ protected:
                 break;
         }
     }
-    /// No sweep and no NaN, which keep a world from being compared.
+    /// No sweep, which keeps a world from being compared, and no NaN.
     static void calm(World& world) {
         for (std::size_t i = 0; i < world.proxies.size(); ++i) {
             world.sweep(world.proxies[i].id, Vector3<Scalar>::Zero(), Sweep::none);
@@ -284,6 +284,39 @@ TYPED_TEST(Few, AreFoundInAGridWithoutPairs) {
         EXPECT_TRUE(world.grid.update().filed == 0 || update <= 50) << update;
         ASSERT_EQ(world.grid.validate(), "");
         world.expectQueriesLikeBruteForce(isAsked ? 2 : 0);
+    }
+}
+
+// Indices of those that came and went are in the list of changes already.
+TYPED_TEST(Few, ThatComeAfterMemoryWasGivenBackHaveRoomInTheListOfChanges) {
+    for (const std::size_t others : {std::size_t{1}, std::size_t{14}}) {
+        Grid<TypeParam> grid;
+        Random random(7);
+        const auto draw = spreadScene<TypeParam>("few", 1, 0).draw;
+        std::vector<ProxyId> ids;
+        for (std::size_t i = 0; i < 10 + others; ++i) {
+            ids.push_back(grid.add(draw(random)));
+        }
+        grid.update();
+        for (std::size_t i = 0; i < 10; ++i) {
+            grid.remove(ids[i]);
+        }
+        grid.update();
+        std::vector<ProxyId> come;
+        for (int i = 0; i < 9; ++i) {
+            come.push_back(grid.add(draw(random)));
+        }
+        for (const ProxyId id : come) {
+            grid.remove(id);
+        }
+        grid.move(ids.back(), draw(random));
+        EXPECT_EQ(grid.update().filed, 0U);  // compared
+        grid.releaseUnusedMemory();
+        ids.push_back(grid.add(draw(random)));
+        for (std::size_t i = 10; i < ids.size(); ++i) {
+            grid.move(ids[i], draw(random));
+        }
+        EXPECT_EQ(grid.validate(), "");
     }
 }
 

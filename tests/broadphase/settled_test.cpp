@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -237,6 +238,60 @@ TYPED_TEST(Settled, HoldInAGridWithoutPairs) {
 }
 
 // What they needed while they were mobile is given back.
+// What rests has just been filed, and moves within its slack afterwards.
+TYPED_TEST(Settled, AreMetByRaysWhoseTreeAFilterHasMade) {
+    Grid<TypeParam> grid;
+    Pairs<TypeParam> pairs(grid);
+    Random random(7);
+    const auto draw = spreadScene<TypeParam>("trembling", 1, 0).draw;
+    std::vector<Aabb<TypeParam>> home;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 300; ++i) {
+        home.push_back(draw(random));
+        ids.push_back(grid.add(home.back()));
+    }
+    const auto hither = makeBox<TypeParam>(50, 50, 50, 51, 51, 51);
+    const ProxyId fares = grid.add(hither);
+    static_cast<void>(grid.add(hither, Mobility::resting));
+    std::size_t asked = 0;
+    for (int update = 0; update < 100; ++update) {
+        for (std::size_t i = 0; i < home.size(); ++i) {
+            grid.move(ids[i], shifted(random, home[i], 0.01));
+        }
+        grid.move(fares, update % 2 == 0 ? hither : makeBox<TypeParam>(70, 50, 50, 71, 51, 51));
+        static_cast<void>(pairs.update([&](ProxyId, ProxyId) {
+            ++asked;
+            grid.expectRays(100000);
+            return true;
+        }));
+        for (const ProxyId id : ids) {
+            const Aabb<TypeParam>& box = grid.box(id);
+            const Vector3<TypeParam> to(box.center()[0], box.center()[1], box.max()[2]);
+            std::vector<ProxyId> found;
+            CollectAll all(found);
+            grid.visit(RayRegion<TypeParam>(to + Vector3<TypeParam>(0, 0, 1), to), all);
+            ASSERT_TRUE(std::ranges::find(found, id) != found.end()) << update;
+        }
+    }
+    EXPECT_GT(asked, 10U);
+}
+
+TYPED_TEST(Settled, AreMetByManySweepsThatGoAlongRays) {
+    constexpr std::size_t kFlying = 120;
+    TremblingWorld<TypeParam> world(GridConfig{.slack = 1});
+    world.add(makeBox<TypeParam>(-5000, -5000, 0, -4999, -4999, 1), Mobility::resting);
+    world.add(makeBox<TypeParam>(4999, 4999, 0, 5000, 5000, 1), Mobility::resting);
+    const std::size_t first = world.proxies.size();
+    for (std::size_t i = first; i < first + kFlying; ++i) {
+        const auto at = world.random.pointIn(-10, 10);
+        world.add(boxAround<TypeParam>({-4000, at[1] - 450, at[2]}, {0.3, 0.3, 0.3}));
+        world.sweep(world.proxies[i].id, Vector3<TypeParam>(8000, 900, 0), Sweep::automatic);
+    }
+    world.play(40, 0.2);
+    EXPECT_GT(world.cost().resting, 250U);
+    EXPECT_GT(world.sweeps.sweeping().search.cost().rays, 50U);
+}
+
 TYPED_TEST(Settled, TakeLessMemoryAfterALongWhile) {
     constexpr std::size_t kCount = 3000;
     Population<TypeParam> world;
