@@ -237,6 +237,8 @@ void Store<Scalar>::wakeSettled() noexcept {
         }
     }
     tables.resting.unsettle();
+    // Who reads the tables alone is to find them as well.
+    tables.mustRefileMobile.store(true, std::memory_order_release);
 }
 
 }  // namespace hashphase::detail

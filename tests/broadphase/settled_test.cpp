@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <set>
 #include <vector>
 
 namespace hashphase::test {
@@ -290,6 +291,28 @@ TYPED_TEST(Settled, AreMetByManySweepsThatGoAlongRays) {
     world.play(40, 0.2);
     EXPECT_GT(world.cost().resting, 250U);
     EXPECT_GT(world.sweeps.sweeping().search.cost().rays, 50U);
+}
+
+TYPED_TEST(Settled, AreCollectedAfterTheyWereWoken) {
+    for (const bool isShifted : {false, true}) {
+        TremblingWorld<TypeParam> world;
+        world.play(60);
+        ASSERT_GT(world.cost().resting, 200U);
+        const auto collected = [&] {
+            std::vector<ProxyPair> all;
+            world.pairs.collect(all);
+            return std::set<ProxyPair>(all.begin(), all.end());
+        };
+        ASSERT_GT(world.set().size(), 100U);
+        EXPECT_EQ(collected(), world.set());
+        if (isShifted) {
+            world.shift({0, 0, 0});
+        } else {
+            world.grid.releaseUnusedMemory();
+        }
+        EXPECT_EQ(collected(), world.set());
+        world.play(20);
+    }
 }
 
 TYPED_TEST(Settled, TakeLessMemoryAfterALongWhile) {
