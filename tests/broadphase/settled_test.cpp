@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <limits>
 #include <set>
+#include <thread>
 #include <vector>
 
 namespace hashphase::test {
@@ -291,6 +292,50 @@ TYPED_TEST(Settled, AreMetByManySweepsThatGoAlongRays) {
     world.play(40, 0.2);
     EXPECT_GT(world.cost().resting, 250U);
     EXPECT_GT(world.sweeps.sweeping().search.cost().rays, 50U);
+}
+
+// Their candidates fill several parts.
+TEST(SettledMany, HaveTheSamePairsOnThreads) {
+    constexpr std::size_t kCount = 12'000;
+    Random random(7);
+    const auto draw = [](Random& drawn) {
+        return boxAround<float>(drawn.pointIn(0, 26), {0.5, 0.5, 0.5});
+    };
+    const auto home = drawBoxes<float>(random, kCount, draw);
+    const auto onTwoThreads = [](std::size_t count, std::size_t grain, LoopBody body) {
+        const auto run = [&](std::size_t begin) {
+            for (; begin < count; begin += 2 * grain) {
+                body(begin, std::min(begin + grain, count));
+            }
+        };
+        std::thread other([&] { run(grain); });
+        run(0);
+        other.join();
+    };
+    Grid<float> alone, together;
+    Pairs<float> pairsAlone(alone), pairsTogether(together);
+    std::vector<ProxyId> ids;
+    for (const Aabb<float>& box : home) {
+        ids.push_back(alone.add(box));
+        ASSERT_EQ(together.add(box), ids.back());
+    }
+    std::size_t turned = 0;
+    for (int update = 0; update < 40; ++update) {
+        for (std::size_t i = 0; i < kCount; ++i) {
+            const Aabb<float> box = shifted(random, home[i], 0.01);
+            alone.move(ids[i], box);
+            together.move(ids[i], box);
+        }
+        const PairChanges expected = pairsAlone.update();
+        const PairChanges changes = pairsTogether.update(acceptAllPairs, onTwoThreads);
+        ASSERT_TRUE(std::ranges::equal(changes.born, expected.born)) << update;
+        ASSERT_TRUE(std::ranges::equal(changes.died, expected.died)) << update;
+        turned += update < 30 ? 0 : changes.born.size() + changes.died.size();
+    }
+    EXPECT_GT(pairsAlone.lastCost().grid.resting, kCount / 2);
+    EXPECT_GT(pairsAlone.lastCost().pairsWatched, 8192U);
+    EXPECT_GT(turned, 100U);
+    EXPECT_EQ(pairsTogether.validate(), "");
 }
 
 TYPED_TEST(Settled, AreCollectedAfterTheyWereWoken) {
