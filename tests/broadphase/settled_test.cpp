@@ -5,6 +5,7 @@
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/pair_world.hpp>
 #include <tests/support/population.hpp>
+#include <tests/support/threaded_for.hpp>
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,6 @@
 #include <cstdint>
 #include <limits>
 #include <set>
-#include <thread>
 #include <vector>
 
 namespace hashphase::test {
@@ -302,16 +302,7 @@ TEST(SettledMany, HaveTheSamePairsOnThreads) {
         return boxAround<float>(drawn.pointIn(0, 26), {0.5, 0.5, 0.5});
     };
     const auto home = drawBoxes<float>(random, kCount, draw);
-    const auto onTwoThreads = [](std::size_t count, std::size_t grain, LoopBody body) {
-        const auto run = [&](std::size_t begin) {
-            for (; begin < count; begin += 2 * grain) {
-                body(begin, std::min(begin + grain, count));
-            }
-        };
-        std::thread other([&] { run(grain); });
-        run(0);
-        other.join();
-    };
+    ThreadedFor onThreads(3, 0x5eed0701);
     Grid<float> alone, together;
     Pairs<float> pairsAlone(alone), pairsTogether(together);
     std::vector<ProxyId> ids;
@@ -327,7 +318,7 @@ TEST(SettledMany, HaveTheSamePairsOnThreads) {
             together.move(ids[i], box);
         }
         const PairChanges expected = pairsAlone.update();
-        const PairChanges changes = pairsTogether.update(acceptAllPairs, onTwoThreads);
+        const PairChanges changes = pairsTogether.update(acceptAllPairs, onThreads);
         ASSERT_TRUE(std::ranges::equal(changes.born, expected.born)) << update;
         ASSERT_TRUE(std::ranges::equal(changes.died, expected.died)) << update;
         turned += update < 30 ? 0 : changes.born.size() + changes.died.size();
