@@ -73,8 +73,8 @@ struct Changed : Population<float> {
                                     const std::function<void(ProxyId, float)>& change) {
         touched.clear();
         std::map<ProxyId, int> expected;
-        for (const auto& [id, box, colour] : proxies) {
-            expected[id] = matches(id, box) ? 1 : 0;
+        for (const Placed<float>& proxy : proxies) {
+            expected[proxy.id] = matches(proxy.id, proxy.box) ? 1 : 0;
         }
         std::map<ProxyId, int> offered;
         CallEach collector{[&](ProxyId id, float key) {

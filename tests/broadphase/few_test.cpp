@@ -231,29 +231,19 @@ TYPED_TEST(Few, MeetWhatRests) {
 TYPED_TEST(Few, ThatAreLeftOfManyWhichHadSettledAreComparedAgain) {
     RoomWorld<TypeParam> world;
     world.addMany(300, spreadScene<TypeParam>("trembling", 1, 0).draw);
-    std::vector<Aabb<TypeParam>> home;
-    for (const Placed<TypeParam>& proxy : world.proxies) {
-        home.push_back(proxy.box);
-    }
-    const auto tremble = [&] {
-        for (std::size_t i = 0; i < world.proxies.size(); ++i) {
-            world.moveTo(i, shifted(world.random, home[i], 0.01));
+    const auto play = [&](int updates) {
+        for (int update = 0; update < updates; ++update) {
+            world.tremble();
+            world.endFrame();
         }
-        world.endFrame();
     };
-    for (int update = 0; update < 60; ++update) {
-        tremble();
-    }
+    play(60);
     EXPECT_GT(world.pairs.lastCost().grid.resting, 200U);
     world.keepOnly([](std::size_t i) { return i < 10; });
-    for (int update = 0; update < 3; ++update) {
-        tremble();
-    }
+    play(3);
     EXPECT_EQ(world.pairs.lastCost().grid.resting, 0U);
     world.comparedCount = 0;
-    for (int update = 0; update < 60; ++update) {
-        tremble();
-    }
+    play(60);
     EXPECT_EQ(world.comparedCount, 60U);
 }
 

@@ -87,8 +87,8 @@ TYPED_TEST(OriginShift, ThatIsExactChangesNoPairAndWakesNobody) {
     for (const int meters : {1, -1024, 1023, 1 << 20, -(1 << 20), 0}) {
         const auto by = static_cast<TypeParam>(meters);
         world.shift(Vector3<TypeParam>(by, -by, meters == 0 ? 0 : 3));
-        for (const auto& [id, box, colour] : world.proxies) {
-            ASSERT_TRUE(isSameBits(world.grid.box(id), box));
+        for (const Placed<TypeParam>& proxy : world.proxies) {
+            ASSERT_TRUE(isSameBits(world.grid.box(proxy.id), proxy.box));
         }
         expectNothingChanged(world);
         EXPECT_EQ(world.pairs.lastCost().grid.resting, 200U);

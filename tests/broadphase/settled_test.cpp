@@ -26,26 +26,16 @@ struct TremblingWorld : Population<Scalar, PairWorld> {
 
     explicit TremblingWorld(const GridConfig& config = {}) : Population<Scalar, PairWorld>(config) {
         this->addMany(kCount, spreadScene<Scalar>("trembling", 1, 0).draw);
-        for (const Placed<Scalar>& proxy : this->proxies) {
-            home.push_back(proxy.box);
-        }
         this->updateAndCheck();
     }
 
-    void tremble(std::size_t from = 0, double by = 0.01) {
-        for (std::size_t i = from; i < home.size(); ++i) {
-            this->moveTo(i, shifted(this->random, home[i], by));
-        }
-    }
     void play(int updates, double by = 0.01) {
         for (int i = 0; i < updates; ++i) {
-            tremble(0, by);
+            this->tremble(0, kCount, by);
             this->updateAndCheck();
         }
     }
     [[nodiscard]] const UpdateCost& cost() const { return this->pairs.lastCost().grid; }
-
-    std::vector<Aabb<Scalar>> home;
 };
 
 template <class Scalar>
@@ -150,11 +140,11 @@ TYPED_TEST(Settled, LeaveTheirSlackAtAnyTime) {
             const Aabb<TypeParam> box = world.proxies[at].box;
             const Vector3<TypeParam> middle = box.center();
             const Aabb<TypeParam> inside(middle, middle + box.sizes() / 8);
-            world.moveTo(at, i == 0   ? shifted(world.random, world.home[at], 5)
+            world.moveTo(at, i == 0   ? shifted(world.random, world.proxies[at].home, 5)
                              : i == 1 ? inside
                              : i == 2 ? Aabb<TypeParam>(box.max(), box.min())
                              : i == 3 ? hostileBox<TypeParam>(world.random)
-                                      : world.home[world.any()]);
+                                      : world.proxies[world.any()].home);
         }
         world.updateAndCheck();
         world.expectQueriesLikeBruteForce(2);
@@ -166,13 +156,13 @@ TYPED_TEST(Settled, MeetWhatTravelsWhatStandsAndWhatComes) {
     world.addMany(60, spreadScene<TypeParam>("static", 1, 0).draw, 1);
     std::size_t pairs = 0;
     for (int update = 0; update < 120; ++update) {
-        world.tremble(update % 40 < 30 ? 20 : 0);  // some travel, and come to rest
+        world.tremble(update % 40 < 30 ? 20 : 0, world.kCount);  // some travel, and come to rest
         for (std::size_t i = 0; i < 20 && update % 40 < 30; ++i) {
             world.moveTo(i, shifted(world.random, world.proxies[i].box, 0.4));
         }
         if (update % 7 == 0) {
-            world.moveTo(world.home.size() + world.random.below(60),
-                         shifted(world.random, world.home[world.random.below(300)], 0.1));
+            world.moveTo(world.kCount + world.random.below(60),
+                         shifted(world.random, world.proxies[world.random.below(300)].home, 0.1));
         }
         if (update % 5 == 0) {
             const std::size_t painted = world.random.below(300);
@@ -182,9 +172,6 @@ TYPED_TEST(Settled, MeetWhatTravelsWhatStandsAndWhatComes) {
         }
         if (update % 31 == 0) {
             const auto by = static_cast<TypeParam>(update % 2 == 0 ? 1024 : 0.1);
-            for (Aabb<TypeParam>& box : world.home) {
-                box.translate(Vector3<TypeParam>::Constant(-by));
-            }
             world.shift(Vector3<TypeParam>::Constant(by));
         }
         world.updateAndCheck();
@@ -199,7 +186,7 @@ TYPED_TEST(Settled, AreFewAmongManyThatStand) {
     world.updateAndCheck();
     world.play(60);
     EXPECT_GT(world.cost().resting, 1300 + world.kCount / 2);
-    world.tremble(world.kCount - 5);
+    world.tremble(world.kCount - 5, world.kCount);
     world.updateAndCheck();
 }
 
@@ -222,15 +209,9 @@ TYPED_TEST(Settled, SettleOnlyWhereThereMayBeSlack) {
 TYPED_TEST(Settled, HoldInAGridWithoutPairs) {
     Population<TypeParam> world;
     world.addMany(200, spreadScene<TypeParam>("trembling", 1, 0).draw);
-    std::vector<Aabb<TypeParam>> home;
-    for (const Placed<TypeParam>& proxy : world.proxies) {
-        home.push_back(proxy.box);
-    }
     UpdateCost cost;
     for (int update = 0; update < 60; ++update) {
-        for (std::size_t i = 0; i < home.size(); ++i) {
-            world.moveTo(i, shifted(world.random, home[i], 0.01));
-        }
+        world.tremble();
         world.expectQueriesLikeBruteForce(2);
         cost = world.grid.update();
         world.expectQueriesLikeBruteForce(2);
@@ -239,18 +220,16 @@ TYPED_TEST(Settled, HoldInAGridWithoutPairs) {
     EXPECT_GT(cost.resting, 180U);
 }
 
-// What they needed while they were mobile is given back.
 // What rests has just been filed, and moves within its slack afterwards.
 TYPED_TEST(Settled, AreMetByRaysWhoseTreeAFilterHasMade) {
     Grid<TypeParam> grid;
     Pairs<TypeParam> pairs(grid);
     Random random(7);
     const auto draw = spreadScene<TypeParam>("trembling", 1, 0).draw;
-    std::vector<Aabb<TypeParam>> home;
+    const auto home = drawBoxes<TypeParam>(random, 300, draw);
     std::vector<ProxyId> ids;
-    for (int i = 0; i < 300; ++i) {
-        home.push_back(draw(random));
-        ids.push_back(grid.add(home.back()));
+    for (const Aabb<TypeParam>& box : home) {
+        ids.push_back(grid.add(box));
     }
     const auto hither = makeBox<TypeParam>(50, 50, 50, 51, 51, 51);
     const ProxyId fares = grid.add(hither);
@@ -351,19 +330,14 @@ TYPED_TEST(Settled, AreCollectedAfterTheyWereWoken) {
     }
 }
 
+// What they needed while they were mobile is given back.
 TYPED_TEST(Settled, TakeLessMemoryAfterALongWhile) {
     constexpr std::size_t kCount = 3000;
     Population<TypeParam> world;
     world.addMany(kCount, spreadScene<TypeParam>("trembling", 1, 0).draw);
-    std::vector<Aabb<TypeParam>> home;
-    for (const Placed<TypeParam>& proxy : world.proxies) {
-        home.push_back(proxy.box);
-    }
     const auto play = [&](int updates) {
         for (int update = 0; update < updates; ++update) {
-            for (std::size_t i = 0; i < kCount; ++i) {
-                world.moveTo(i, shifted(world.random, home[i], 0.01));
-            }
+            world.tremble();
             world.grid.update();
         }
         return world.grid.memoryBytes();

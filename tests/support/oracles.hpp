@@ -40,6 +40,7 @@ struct Placed {
     ProxyId id;
     Aabb<Scalar> box;
     std::uint32_t colour = 0;
+    Aabb<Scalar> home = box;  // where it was when it was listed, see Population::tremble()
 };
 
 [[nodiscard]] inline bool coloursPair(std::uint32_t a, std::uint32_t b) noexcept {

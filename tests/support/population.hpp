@@ -6,6 +6,7 @@
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/query_checks.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -39,6 +40,13 @@ struct Population : World<Scalar> {
         proxies[i].box = box;
         Base::move(proxies[i].id, box);
     }
+    /// Moves those in the list from `first` up to `last` by up to `by` [m] along each axis from their homes, which
+    /// is where they were added.
+    void tremble(std::size_t first = 0, std::size_t last = ~std::size_t{0}, double by = 0.01) {
+        for (std::size_t i = first; i < std::min(last, proxies.size()); ++i) {
+            moveTo(i, shifted(random, proxies[i].home, by));
+        }
+    }
     /// The last one takes its place in the list.
     void removeAt(std::size_t i) {
         Base::remove(proxies[i].id);
@@ -66,6 +74,7 @@ struct Population : World<Scalar> {
         Base::shiftOrigin(by);
         for (Placed<Scalar>& proxy : proxies) {
             proxy.box = {proxy.box.min() - by, proxy.box.max() - by};
+            proxy.home = {proxy.home.min() - by, proxy.home.max() - by};
         }
     }
     /// A place in the list.
