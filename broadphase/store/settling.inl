@@ -237,6 +237,7 @@ void Store<Scalar>::wakeSettled() noexcept {
         }
     }
     tables.resting.unsettle();
+    observedEach = kOftenObserved;  // they tremble, and are to settle again
     // Who reads the tables alone is to find them as well.
     tables.mustRefileMobile.store(true, std::memory_order_release);
 }
