@@ -2,7 +2,8 @@
 #pragma once
 
 // A ParallelFor for tests: as many threads as asked for, ranges of uneven lengths, dealt out in an
-// order that means nothing.
+// order that means nothing. What the loop's body throws, or the want of a thread, ends it as it would a plain loop:
+// when all threads are done.
 
 #include <broadphase/parallel_for.hpp>
 #include <tests/support/random.hpp>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -31,17 +33,25 @@ public:
         for (std::size_t i = ranges.size(); i > 1; --i) {
             std::swap(ranges[i - 1], ranges[random_.below(static_cast<std::uint32_t>(i))]);
         }
-        std::vector<std::thread> threads;
-        for (std::size_t t = 0; t < std::min(threadCount_, ranges.size()); ++t) {
+        std::vector<std::exception_ptr> thrown(std::min(threadCount_, ranges.size()));
+        std::vector<std::jthread> threads;  // which are joined as it is left
+        for (std::size_t t = 0; t < thrown.size(); ++t) {
             threads.emplace_back([&, t] {
-                for (std::size_t i = t; i < ranges.size(); i += threadCount_) {
-                    body(ranges[i].first, ranges[i].second);
+                try {
+                    for (std::size_t i = t; i < ranges.size(); i += threadCount_) {
+                        body(ranges[i].first, ranges[i].second);
+                    }
+                } catch (...) {
+                    thrown[t] = std::current_exception();
                 }
             });
         }
         mostRanges_ = std::max(mostRanges_, ranges.size());
-        for (std::thread& thread : threads) {
-            thread.join();
+        threads.clear();
+        for (const std::exception_ptr& each : thrown) {
+            if (each != nullptr) {
+                std::rethrow_exception(each);
+            }
         }
     }
 
