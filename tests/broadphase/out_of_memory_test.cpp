@@ -4,13 +4,10 @@
 
 #include <broadphase/neighbours.hpp>
 #include <broadphase/radius_search.hpp>
-#include <tests/support/out_of_memory.hpp>
-#include <tests/support/pair_world.hpp>
-#include <tests/support/population.hpp>
+#include <tests/broadphase/failing_world.hpp>
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <memory>
 #include <new>
 #include <span>
@@ -21,93 +18,6 @@
 
 namespace hashphase::test {
 namespace {
-
-/// Grid, sweeps and pairs, some of which refuse each other, and what they must be like.
-struct FailingWorld : Population<float, PairWorld> {
-    explicit FailingWorld(std::size_t count) { addSome(count); }
-
-    void addSome(std::size_t count) {
-        for (std::size_t i = 0; i < count; ++i) {
-            add(scene.draw(random), i % 3 == 0 ? Mobility::resting : Mobility::mobile);
-            paint(proxies.size() - 1, static_cast<std::uint32_t>(proxies.size() - 1) % 3);
-        }
-    }
-    void moveSome(std::size_t step) {
-        for (std::size_t i = 0; i < proxies.size(); i += step) {
-            moveTo(i, scene.draw(random));
-        }
-    }
-    void removeSome(std::size_t step) {
-        for (std::size_t i = 0; i < proxies.size(); i += step) {
-            removeAt(i);
-        }
-    }
-    void sweepSome(std::size_t step) {
-        for (std::size_t i = 0; i < proxies.size(); i += step) {
-            const Vector3<float> way = random.pointIn(-30, 30).cast<float>();
-            sweep(proxies[i].id, way, Sweep::automatic);
-        }
-    }
-    void checkQueries() {
-        EXPECT_EQ(grid.validate() + sweeps.validate(), "");
-        EXPECT_EQ(grid.size(), proxies.size());
-        if (!proxies.empty()) {
-            RegionMaker<float> regions(random, proxies);
-            expectLikeBruteForce(regions.box());
-            expectLikeBruteForce(regions.ray());
-        }
-    }
-    void updateAndCheckPairs() {
-        update();
-        check(proxies);
-        EXPECT_EQ(pairs.validate(), "");
-    }
-
-    BoxScene<float> scene = spreadScene<float>("spread", 1, 0);
-};
-
-/// Which has seen frames enough for most to rest, and then some changes.
-std::unique_ptr<FailingWorld> longRun() {
-    auto world = std::make_unique<FailingWorld>(45);
-    for (int frame = 0; frame < 10; ++frame) {
-        world->moveSome(9);
-        world->update();
-    }
-    world->addSome(45);
-    world->moveSome(2);
-    world->removeSome(7);
-    return world;
-}
-
-/// After a failure or none the world goes on as if there had been none.
-void checkPairsGoOn(FailingWorld& world, std::size_t n) {
-    world.checkQueries();
-    if (n % 2 == 1) {  // what changes meanwhile comes in addition
-        world.moveSome(5);
-        world.removeSome(11);
-        world.addSome(3);
-    }
-    for (int frame = 0; frame < 2; ++frame) {
-        world.updateAndCheckPairs();
-        world.moveSome(13);
-    }
-    world.checkQueries();
-}
-
-struct OutOfMemory : testing::Test {
-    using Make = std::function<std::unique_ptr<FailingWorld>()>;
-
-    void SetUp() override {
-        if (!kCountsAllocations) {
-            GTEST_SKIP() << "this program has another `new`";
-        }
-    }
-    /// The attempt fails at least so often, and the world goes on each time.
-    static void expectGoesOn(std::size_t fewest, const Make& make,
-                             const std::function<void(FailingWorld&)>& attempt) {
-        EXPECT_GE(runOutOfMemory(make, attempt, checkPairsGoOn), fewest);
-    }
-};
 
 TEST_F(OutOfMemory, AnUpdateOfPairsIsRepeated) {
     const auto update = [](FailingWorld& world) { updatePairsInWant(world); };
@@ -183,17 +93,24 @@ TEST_F(OutOfMemory, AddingHasHappenedOrNotAndMovingAndRemovingAllocateNothing) {
 }
 
 TEST_F(OutOfMemory, AQueryThatFilesOrGrowsATreeIsRepeated) {
+    const auto settled = [] { return settledRun(200); };
+    const auto unfiled = [] { return std::make_unique<FailingWorld>(200); };
     for (const bool isRay : {false, true}) {
         const auto ask = [=](FailingWorld& world) {
             const BoxRegion<float> box{boxAround<float>({0, 0, 0}, {3, 3, 3})};
             const RayRegion<float> ray({-9, 0, 0}, {9, 1, 1});
-            for (int i = 0; i < 8; ++i) {  // of which one files
+            world.grid.expectRays(isRay ? 1'000'000 : 0);
+            for (int i = 0; i < 12; ++i) {  // of which one files
                 CollectCount count;
                 isRay ? world.grid.visit(ray, count) : world.grid.visit(box, count);
             }
         };
-        expectGoesOn(
-            isRay ? 30 : 20, [] { return std::make_unique<FailingWorld>(200); }, ask);
+        const auto check = [](FailingWorld& world, std::size_t n) {
+            world.expectQueriesLikeBruteForce(10);
+            checkPairsGoOn(world, n);
+        };
+        expectGoesOn(isRay ? 55 : 40, unfiled, ask, check);
+        expectGoesOn(isRay ? 55 : 40, settled, ask, check);
     }
 }
 
@@ -201,14 +118,22 @@ TEST_F(OutOfMemory, AnUpdateOfAGridAloneIsRepeated) {
     using Alone = Population<float>;
     const std::size_t failures = runOutOfMemory(
         [] {
-            auto world = std::make_unique<Alone>();
+            auto world = std::make_unique<Alone>(GridConfig{.slack = 0.2});
             const auto draw = spreadScene<float>("spread", 1, 0).draw;
             world->addMany(150, draw, 2);
             world->update();
             world->addMany(150, draw, 2);
             return world;
         },
-        [](Alone& world) { world.update(); },
+        [](Alone& world) {
+            for (int frame = 0; frame < 20; ++frame) {  // in which half of them settle
+                world.update();
+                const WorkingAllocations lifted;
+                world.tremble(0, 150, kTrembling);
+            }
+            const WorkingAllocations lifted;
+            EXPECT_GT(world.grid.update().resting, 150U);
+        },
         [](Alone& world, std::size_t n) {
             for (int frame = 0; frame < 2; ++frame) {
                 EXPECT_EQ(world.grid.validate(), "");
@@ -223,31 +148,39 @@ TEST_F(OutOfMemory, AnUpdateOfAGridAloneIsRepeated) {
 // Where what is rounded cannot be filed anew, the shift has happened all the same.
 TEST_F(OutOfMemory, AShiftOfTheOriginHasHappenedOrNot) {
     const Vector3<float> shift(1000.1F, -300.3F, 0.7F);
-    for (std::size_t n = 0; n < 12; ++n) {
+    const auto checkShifted = [&](FailingWorld& world, std::size_t n) {
         SCOPED_TRACE("after " + std::to_string(n / 2) + " allocations");
-        const std::unique_ptr<FailingWorld> world = longRun();
-        if (n % 2 == 0) {
-            world->update();
-        }
         bool hasHappened = true;
         try {
             const FailingAllocations failing(n / 2);
-            world->grid.shiftOrigin(shift);
+            world.grid.shiftOrigin(shift);
         } catch (const std::bad_alloc&) {
             hasHappened = false;
         }
         EXPECT_EQ(hasHappened, n >= 2) << "only room for the boxes of the last update is needed";
-        for (Placed<float>& proxy : world->proxies) {
+        for (Placed<float>& proxy : world.proxies) {
             const Vector3<float> by = hasHappened ? shift : Vector3<float>(0, 0, 0);
-            proxy.box = Aabb<float>(proxy.box.min() - by, proxy.box.max() - by);
-            EXPECT_TRUE(isSameBits(world->grid.box(proxy.id), proxy.box));
+            for (Aabb<float>* const box : {&proxy.box, &proxy.home}) {
+                *box = Aabb<float>(box->min() - by, box->max() - by);
+            }
+            EXPECT_TRUE(isSameBits(world.grid.box(proxy.id), proxy.box));
         }
         if (n % 3 == 0) {
-            const std::size_t before = world->set().size();
-            world->refilter(world->proxies[0].id);
-            EXPECT_GE(world->set().size(), before) << "nothing dies";
+            const std::size_t before = world.set().size();
+            world.refilter(world.proxies[0].id);
+            EXPECT_GE(world.set().size(), before) << "nothing dies";
         }
+    };
+    for (std::size_t n = 0; n < 12; ++n) {
+        const std::unique_ptr<FailingWorld> world = longRun();
+        if (n % 2 == 0) {
+            world->update();
+        }
+        checkShifted(*world, n);
         checkPairsGoOn(*world, n / 4);
+        const std::unique_ptr<FailingWorld> settled = settledRun();
+        checkShifted(*settled, n);
+        checkTremblingGoesOn(*settled, n / 4);
     }
 }
 
@@ -322,7 +255,7 @@ TEST_F(OutOfMemory, LeavesWhatIsRefusedAsItWasWhenAFailedUpdateIsRepairedInVain)
 TEST(PairsFailure, AFilterThatThrowsLeavesTheFrameToTheNextUpdate) {
     std::size_t failures = 0;
     for (bool hasThrown = true; hasThrown;) {
-        const std::unique_ptr<FailingWorld> world = longRun();
+        const std::unique_ptr<FailingWorld> world = failures % 2 == 0 ? longRun() : settledRun();
         std::size_t asked = 0;
         const auto throwing = [&](ProxyId a, ProxyId b) {
             if (asked++ == 5 * failures) {

@@ -3,6 +3,7 @@
 
 // What becomes of something for which memory runs out, at each of its allocations in turn.
 
+#include <broadphase/parallel_for.hpp>
 #include <tests/support/count_allocations.hpp>
 
 #include <gtest/gtest.h>
@@ -43,9 +44,9 @@ std::size_t runOutOfMemory(const MakeWorld& make, const Attempt& attempt, const 
 
 /// Updates the pairs of a PairWorld while memory may run out: for them alone.
 template <class World>
-void updatePairsInWant(World& world) {
+void updatePairsInWant(World& world, ParallelFor parallelFor = serialFor) {
     const auto accept = [&world](auto a, auto b) { return world.colours.accept(a, b); };
-    const auto changes = world.pairs.update(accept);
+    const auto changes = world.pairs.update(accept, parallelFor);
     const WorkingAllocations lifted;
     world.apply(changes);
 }

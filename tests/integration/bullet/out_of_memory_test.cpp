@@ -44,6 +44,25 @@ struct Scarce : Boxes {
             create(anywhere(), group, -1, this);
         }
     }
+    /// Steps, while each trembles about where it was at first, until all have settled.
+    void stepTrembling() {
+        std::vector<Box> homes;
+        {
+            const WorkingAllocations working;
+            for (const btBroadphaseProxy* proxy : proxies) {
+                homes.push_back(boxOf(*proxy));
+            }
+        }
+        for (int i = 0; i < 40; ++i) {
+            for (std::size_t k = 0; k < proxies.size(); ++k) {
+                const btVector3 by = random.vector(-0.02F, 0.02F);
+                set(proxies[k], {homes[k].min + by, homes[k].max + by});
+            }
+            step();
+        }
+        const WorkingAllocations working;
+        EXPECT_EQ(cost().grid.resting, proxies.size());
+    }
     void moveSome(std::size_t stride) {
         for (std::size_t i = 0; i < proxies.size(); i += stride) {
             set(proxies[i], anywhere());
@@ -123,6 +142,8 @@ const Scarcity kScarcities[] = {
          }
          boxes.step();
      },
+     10},
+    {"so it is where boxes settle", 60, 1, 1, false, [](Scarce& boxes) { boxes.stepTrembling(); },
      10},
     {"a proxy is created or not", 0, 1, 0, false, [](Scarce& boxes) { boxes.createSome(70, 1); },
      8},
