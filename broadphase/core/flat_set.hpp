@@ -17,6 +17,7 @@
 //           std::length_error, and the set is as it was.
 
 #include <broadphase/core/limits.hpp>
+#include <broadphase/core/parted_blocks.hpp>
 #include <broadphase/core/prefetch.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/tag_kernel.hpp>
@@ -26,6 +27,8 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -95,13 +98,7 @@ public:
     /// when the key was not there. Cost: O(1).
     std::uint32_t vacate(std::uint64_t key) noexcept {
         const std::uint32_t keyHash = hash(key);
-        const Place place = placeOf(key, keyHash);
-        if (place.isNone()) {
-            return kNone;
-        }
-        const std::uint32_t number = groups_[place.group].numbers[place.lane];
-        emptyPlace(place, keyHash);
-        return number;
+        return vacate(placeOf(key, keyHash), keyHash);
     }
 
     /// The key's number. A key that was not there gets `number`, which is vacant, or size().
@@ -116,7 +113,7 @@ public:
         if (!place.isNone()) {
             return groups_[place.group].numbers[place.lane];
         }
-        enter(keyHash, number);
+        enter(groupWithRoom(keyHash), keyHash, number);
         if (number == keys_.size()) {
             keys_.push_back(key);
         } else {
@@ -124,6 +121,10 @@ public:
         }
         return number;
     }
+
+    /// Adds so many numbers behind the others, vacant. Takes no memory after reserve() of more than there
+    /// are then.
+    void addVacant(std::size_t count) { keys_.resize(keys_.size() + count); }
 
     /// Gives a vacant number to the last key, or drops it when it is the last itself.
     void fill(std::uint32_t number) noexcept {
@@ -134,6 +135,40 @@ public:
             keys_[number] = keys_[last];
         }
         keys_.pop_back();
+    }
+
+    // Threads may vacate and insert at the same time, each of them keys of one part: see KeyParts. A search that
+    // leaves the part is not made, and nullopt returned.
+
+    static constexpr std::uint32_t kParts = PartedBlocks::kParts;
+
+    /// The part of the table where the search for the key begins.
+    [[nodiscard]] static std::uint32_t partOf(std::uint64_t key) noexcept {
+        return hash(key) >> kPartShift;
+    }
+    [[nodiscard]] bool isInParts() const noexcept { return groups_.size() >= kParts; }
+
+    std::optional<std::uint32_t> vacateInPart(std::uint64_t key) noexcept {
+        const std::uint32_t keyHash = hash(key);
+        const Place place = placeOf(key, keyHash, endOfPart(keyHash));
+        return place.isBeyond() ? std::nullopt : std::optional(vacate(place, keyHash));
+    }
+
+    /// The number is vacant, and below size().
+    std::optional<std::uint32_t> insertInPart(std::uint64_t key, std::uint32_t number) noexcept {
+        const std::uint32_t keyHash = hash(key);
+        const std::size_t end = endOfPart(keyHash);
+        const Place place = placeOf(key, keyHash, end);
+        if (!place.isNone() && !place.isBeyond()) {
+            return groups_[place.group].numbers[place.lane];
+        }
+        const std::size_t group = place.isBeyond() ? end : groupWithRoom(keyHash, end);
+        if (group == end) {
+            return std::nullopt;
+        }
+        enter(group, keyHash, number);
+        keys_[number] = key;
+        return number;
     }
 
     // --- All keys --------------------------------------------------------------------------------
@@ -259,6 +294,9 @@ private:
         return number;
     }
 
+    static constexpr unsigned kPartShift = 32 - std::countr_zero(kParts);
+    static constexpr std::size_t kNoEnd = std::numeric_limits<std::size_t>::max();
+
     static constexpr std::uint32_t kLanes = 12;
     static constexpr std::size_t kFullGroup = 9;  // on average, before the table grows
 
@@ -280,6 +318,7 @@ private:
         std::uint32_t lane = kLanes;
 
         [[nodiscard]] bool isNone() const noexcept { return lane == kLanes; }
+        [[nodiscard]] bool isBeyond() const noexcept { return lane == kLanes + 1; }
     };
 
     // kNone is no key's number.
@@ -312,12 +351,19 @@ private:
         return (group + 1) & (groups_.size() - 1);
     }
 
-    // Where the key's number is.
-    [[nodiscard]] Place placeOf(std::uint64_t key, std::uint32_t keyHash) const noexcept {
+    // The group behind those of the part.
+    [[nodiscard]] std::size_t endOfPart(std::uint32_t keyHash) const noexcept {
+        constexpr std::uint32_t kLastOfPart = (std::uint32_t{1} << kPartShift) - 1;
+        return next(home(keyHash | kLastOfPart));
+    }
+
+    // Where the key's number is; beyond, where it is looked for as far as `end`.
+    [[nodiscard]] Place placeOf(std::uint64_t key, std::uint32_t keyHash,
+                                std::size_t end = kNoEnd) const noexcept {
         if (groups_.empty()) {
             return {};
         }
-        for (std::size_t g = home(keyHash);; g = next(g)) {
+        for (std::size_t g = home(keyHash);;) {
             const Group& group = groups_[g];
             for (std::uint32_t lanes = group.withTag(tagOf(keyHash)); lanes != 0;
                  lanes &= lanes - 1) {
@@ -329,25 +375,44 @@ private:
             if (group.passedBy == 0) {
                 return {};
             }
+            g = next(g);
+            if (g == end) {
+                return {g, kLanes + 1};
+            }
         }
     }
 
-    // There is always a group with room.
-    void enter(std::uint32_t keyHash, std::uint32_t number) noexcept {
+    // The first one, or `end`. There always is one.
+    [[nodiscard]] std::size_t groupWithRoom(std::uint32_t keyHash,
+                                            std::size_t end = kNoEnd) const noexcept {
         std::size_t g = home(keyHash);
-        for (; groups_[g].used() == kAllLanes; g = next(g)) {
+        while (groups_[g].used() == kAllLanes) {
+            g = next(g);
+            if (g == end) {
+                break;
+            }
+        }
+        return g;
+    }
+
+    void enter(std::size_t group, std::uint32_t keyHash, std::uint32_t number) noexcept {
+        for (std::size_t g = home(keyHash); g != group; g = next(g)) {
             ++groups_[g].passedBy;
         }
-        const std::uint32_t lane = lowest(groups_[g].withTag(0));
-        groups_[g].tags[lane] = tagOf(keyHash);
-        groups_[g].numbers[lane] = number;
+        const std::uint32_t lane = lowest(groups_[group].withTag(0));
+        groups_[group].tags[lane] = tagOf(keyHash);
+        groups_[group].numbers[lane] = number;
     }
 
-    void emptyPlace(const Place& place, std::uint32_t keyHash) noexcept {
+    std::uint32_t vacate(const Place& place, std::uint32_t keyHash) noexcept {
+        if (place.isNone()) {
+            return kNone;
+        }
         for (std::size_t g = home(keyHash); g != place.group; g = next(g)) {
             --groups_[g].passedBy;
         }
         groups_[place.group].tags[place.lane] = 0;
+        return groups_[place.group].numbers[place.lane];
     }
 
     // Allocates first, for the keys as well: where that fails, nothing has changed.
@@ -361,7 +426,8 @@ private:
         for (const Group& group : old) {
             for (std::uint32_t lanes = group.used(); lanes != 0; lanes &= lanes - 1) {
                 const std::uint32_t number = group.numbers[lowest(lanes)];
-                enter(hash(keys_[number]), number);
+                const std::uint32_t keyHash = hash(keys_[number]);
+                enter(groupWithRoom(keyHash), keyHash, number);
             }
         }
     }

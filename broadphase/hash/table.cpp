@@ -54,16 +54,12 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
                                         ParallelFor parallelFor) {
     buckets_.resize(boxes.size());
     const FixedList<SizeClass<Scalar>, kMaxLevels> classes = sizeClasses();
-    parallelFor(boxes.size(), kTableGrain, [&](std::size_t begin, std::size_t end) {
+    const auto find = [&](std::size_t begin, std::size_t end) {
         kernels<Scalar>().fileBoxes(classes.data(), classes.size(), levels_.back().firstBucket,
                                     boxes.data() + begin, end - begin, buckets_.data() + begin);
-    });
-    std::fill(bucketStart_.begin(), bucketStart_.end(), 0);
-    for (const std::uint32_t bucket : buckets_) {
-        if (bucket != kNoBucket) {
-            ++bucketStart_[bucket];
-        }
-    }
+    };
+    bucketSort_->count(buckets_, std::span(bucketStart_).first(bucketStart_.size() - 1),
+                       bucketOfEntry_, find, parallelFor);
     std::size_t count = bucketStart_[levels_.back().firstBucket];
     for (const auto& [dense, hashed] : classes) {
         const auto first = bucketStart_.begin() + hashed->firstBucket;
@@ -74,24 +70,14 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
     return count;
 }
 
-// A counting sort. Boxes that come in the order of the last time are read and written nearly in
-// sequence.
+// Boxes that come in the order of the last time are read and written nearly in sequence.
 template <class Scalar>
 void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxIndices,
                                 std::span<const PaddedBox<Scalar>> boxes, const ProxyGroups* groups,
                                 ParallelFor parallelFor) {
-    std::uint32_t sum = 0;
-    largestBucket_ = 0;
-    const std::size_t listBucket = levels_.back().firstBucket;
-    for (std::size_t bucket = 0; bucket < listBucket; ++bucket) {
-        largestBucket_ = std::max(largestBucket_, bucketStart_[bucket]);
-        sum += std::exchange(bucketStart_[bucket], sum);
-    }
-    sum += std::exchange(bucketStart_[listBucket], sum);
-    bucketStart_.back() = sum;
-    const std::uint32_t count = sum;
+    largestBucket_ = bucketSort_->sort(buckets_, bucketStart_, bucketOfEntry_, order_, parallelFor);
+    const std::size_t count = order_.size();
     proxyIndices_.resize(count);
-    order_.resize(count);
     bucketOfEntry_.resize(count);
     for (auto& column : bounds_) {
         column.resize(count + kColumnPadding);
@@ -100,14 +86,6 @@ void Table<Scalar>::sortEntries(std::span<const std::uint32_t> boxIndices,
         level.firstEntry = bucketStart_[level.firstBucket];
         level.lastEntry = bucketStart_[level.firstBucket + level.bucketCount];
     }
-    // Each start moves to its bucket's end, which is where the next one starts.
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (buckets_[i] != kNoBucket) {
-            order_[bucketStart_[buckets_[i]]++] = static_cast<std::uint32_t>(i);
-        }
-    }
-    std::copy_backward(bucketStart_.begin(), bucketStart_.end() - 1, bucketStart_.end());
-    bucketStart_[0] = 0;
     sortCrowdedBuckets(boxIndices, boxes, groups);
 
     parallelFor(count, kTableGrain, [&](std::size_t begin, std::size_t end) {
@@ -167,6 +145,9 @@ void Table<Scalar>::build(std::span<const std::uint32_t> boxIndices,
     try {
         if (layout_ == nullptr) {
             layout_ = std::make_unique<LevelLayout<Scalar>>();
+        }
+        if (bucketSort_ == nullptr) {
+            bucketSort_ = std::make_unique<BucketSort>();
         }
         unsettle();
         findBuckets(boxes, fixed, parallelFor);
@@ -331,6 +312,7 @@ std::size_t Table<Scalar>::memoryBytes() const noexcept {
            (bucketStart_.capacity() + proxyIndices_.capacity() + order_.capacity() +
             bucketOfEntry_.capacity() + buckets_.capacity() + longOnes_.capacity()) *
                sizeof(std::uint32_t) +
+           (bucketSort_ != nullptr ? bucketSort_->memoryBytes() : 0) +
            6 * bounds_[0].capacity() * sizeof(Scalar) +
            sortedBuckets_.capacity() * sizeof(SortedBucket<Scalar>) +
            (settled_ != nullptr ? sizeof(*settled_) + (6 * settled_->before[0].capacity() +
@@ -366,6 +348,7 @@ void Table<Scalar>::releaseUnusedMemory() noexcept {
         }
     }
     freeArrays(buckets_, longOnes_);
+    bucketSort_.reset();
     linkLevels();
 }
 

@@ -17,6 +17,7 @@
 #include <broadphase/function_ref.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/geometry/quantise.hpp>
+#include <broadphase/hash/bucket_sort.hpp>
 #include <broadphase/hash/level.hpp>
 #include <broadphase/hash/level_layout.hpp>
 #include <broadphase/hash/sorted_bucket.hpp>
@@ -188,8 +189,9 @@ private:
     Bounds bounds_;                     // kColumnPadding longer than the entries
     std::unique_ptr<Settled> settled_;  // made when the first ones settle
 
-    std::vector<std::uint32_t> buckets_;   // scratch of build()
-    std::vector<std::uint32_t> longOnes_;  // the same
+    std::unique_ptr<BucketSort> bucketSort_;  // scratch of build()
+    std::vector<std::uint32_t> buckets_;      // the same
+    std::vector<std::uint32_t> longOnes_;     // the same
 };
 
 extern template class Table<float>;

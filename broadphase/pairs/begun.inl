@@ -31,13 +31,19 @@ void carryToRest(PairState<Scalar>& pairs, bool someSettled) {
     if (pairs.tables.resting.size() == 0 || isRestAstir(pairs)) {
         return;
     }
+    const auto order = pairs.tables.mobile.order();
+    std::vector<std::uint32_t>& entryOf = pairs.scratch.entryOf;
+    entryOf.resize(proxies.mobile.size());
+    for (std::uint32_t entry = 0; entry < order.size(); ++entry) {
+        entryOf[order[entry]] = entry;
+    }
     const auto carryIfKept = [&](std::uint32_t place, std::uint32_t resting) {
         const std::uint32_t mobile = proxies.mobile[place];
         const bool isKept = proxies.records[resting].residency == Residency::resting &&
                             proxies.records[mobile].residency == Residency::mobile &&
                             !proxies.changedNow(mobile);
         if (isKept) {
-            watched.carried.push({pairs.scratch.entryOf[place], resting});
+            watched.carried.push({entryOf[place], resting});
         }
     };
     for (const auto [place, proxyIndex] : watched.toResting.pairs()) {
@@ -56,10 +62,9 @@ void joinMobile(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     const Table<Scalar>& table = pairs.tables.mobile;
     PairList& found = pairs.watched.amongMobile;
     joinAllowed(pairs, table, pairs.frame.mobileKinds, found, parallelFor);
-    for (const auto [a, b] : selectApart<Scalar>(pairs.scratch, found.pairs(), table.order().data(),
-                                                 pairs.frame.before.data(), parallelFor)) {
-        pairs.listToAsk(pairKey(table.proxyIndex(a), table.proxyIndex(b)));
-    }
+    listKeys(selectApart<Scalar>(pairs.scratch, found.pairs(), table.order().data(),
+                                 pairs.frame.before.data(), parallelFor),
+             table.proxyIndices().data(), pairs.call.asked, parallelFor);
 }
 
 // Selects all that overlap and may pair: entries of the mobile table, of what is searched, and of the resting
@@ -131,11 +136,6 @@ template <class Scalar>
     }
     if (doesRefuseMost(pairs, filter)) {
         return false;
-    }
-    const auto order = pairs.tables.mobile.order();
-    pairs.scratch.entryOf.resize(pairs.proxies.mobile.size());
-    for (std::uint32_t entry = 0; entry < order.size(); ++entry) {
-        pairs.scratch.entryOf[order[entry]] = entry;
     }
     carryToRest(pairs, someSettled);
     if (pairs.watched.settled != nullptr) {

@@ -82,10 +82,8 @@ void findEndedOfWatched(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     const auto amongMobile = pairs.watched.amongMobile.pairs();
     const auto toResting = pairs.watched.toResting.pairs();
     pairs.cost.pairsWatched = amongMobile.size() + toResting.size();
-    for (const auto [a, b] :
-         selectApart<Scalar>(pairs.scratch, amongMobile, nullptr, now.data(), parallelFor)) {
-        pairs.call.ended.push_back(pairKey(proxies.mobile[a], proxies.mobile[b]));
-    }
+    listKeys(selectApart<Scalar>(pairs.scratch, amongMobile, nullptr, now.data(), parallelFor),
+             proxies.mobile.data(), pairs.call.ended, parallelFor);
     constexpr std::size_t kAhead = 12;
     for (std::size_t i = 0; i < toResting.size(); ++i) {
         if (i + kAhead < toResting.size()) {

@@ -6,22 +6,12 @@
 #include <broadphase/pairs/pair_state.hpp>
 
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/parallel_for_noexcept.hpp>
 
 #include <algorithm>
 #include <atomic>
 
 namespace hashphase::detail {
-
-// parallelFor(count, grain, body), for a body that may do all twice and throws nothing: where the loop cannot
-// be run on several threads for want of memory, it is run on this one.
-inline void parallelForNoexcept(ParallelFor parallelFor, std::size_t count, std::size_t grain,
-                                LoopBody body) noexcept {
-    try {
-        parallelFor(count, grain, body);
-    } catch (...) {
-        serialFor(count, grain, body);
-    }
-}
 
 // What the filter refused, and has not ended, is asked about again when one of the two has changed, and
 // put aside when both have come to rest.
@@ -83,7 +73,7 @@ void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallel
     if (asked.empty()) {
         return;
     }
-    pairs.sort(pairs.call.asked);
+    pairs.sort(pairs.call.asked, parallelFor);
     pairs.sort(pairs.call.standing);
     const auto numberIfSampled = [pile](PairKey key) {
         return pile != nullptr ? pile->sampled.find(key) : FlatSet::kNone;
@@ -111,12 +101,12 @@ template <class Scalar>
 void makeRoomForAnswers(PairState<Scalar>& pairs, PairChangeLists& lists) {
     KnownPairs& known = pairs.known;
     PairCall& call = pairs.call;
-    const auto refused =
+    call.refusedCount =
         static_cast<std::size_t>(std::count(call.accepted.begin(), call.accepted.end(), 0));
     if (known.arePairs()) {
         known.pile->pairs.reserve(known.pile->pairs.size() + call.asked.size());
-    } else if (refused > 0) {
-        known.refused.reserve(known.refused.size() + refused);
+    } else if (call.refusedCount > 0) {
+        known.refused.reserve(known.refused.size() + call.refusedCount);
     }
     if (!call.immediate.empty()) {
         known.immediate.reserve(known.immediate.size() + call.immediate.size(),
@@ -148,6 +138,12 @@ template <class Scalar>
 void applyAnswers(PairState<Scalar>& pairs) noexcept {  // NOLINT(bugprone-exception-escape)
     KnownPairs& known = pairs.known;
     const std::vector<PairKey>& standing = pairs.call.standing;
+    if (known.areAllPairs() && standing.empty() && pairs.call.refusedCount == 0) {
+        pairs.call.begun.insert(pairs.call.begun.end(), pairs.call.asked.begin(),
+                                pairs.call.asked.end());
+        known.count += pairs.call.asked.size();
+        return;
+    }
     std::size_t nextStanding = 0;
     for (std::size_t i = 0; i < pairs.call.asked.size(); ++i) {
         const PairKey key = pairs.call.asked[i];
@@ -185,7 +181,9 @@ template <class Scalar>
                                 }
                             });
     };
-    pairs.sort(pairs.call.died);
+    if (!std::ranges::is_sorted(pairs.call.died)) {
+        pairs.sort(pairs.call.died);
+    }
     list(pairs.call.begun, lists.born);  // as sorted as what was asked
     list(pairs.call.died, lists.died);
     return {lists.born, lists.died};

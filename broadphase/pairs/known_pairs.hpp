@@ -86,6 +86,10 @@ struct KnownPairs {
         return arePairs() ? !pile->pairs.contains(key)
                           : refused.contains(key) || refusedAtRest.contains(key);
     }
+    /// Whether all candidates are pairs, and nothing is remembered of any.
+    [[nodiscard]] bool areAllPairs() const noexcept {
+        return !arePairs() && refusedCount() + kept.size() == 0;
+    }
     [[nodiscard]] std::size_t refusedCount() const noexcept {
         return refused.size() + refusedAtRest.size();
     }

@@ -16,6 +16,7 @@ struct PairCall {
     std::vector<PairKey> asked;     // what the filter is to be asked about
     std::vector<PairKey> standing;  // those of them that are pairs
     std::vector<char> accepted;     // the answers
+    std::size_t refusedCount = 0;   // of these
     std::vector<PairKey> begun;     // pairs
     std::vector<PairKey> died;
 

@@ -170,8 +170,9 @@ struct HASHPHASE_BROADPHASE_EXPORT PairState {
 
     // --- What passes share -----------------------------------------------------------------------
 
-    void sort(std::vector<PairKey>& keys) {
-        radixSort(keys, static_cast<std::uint32_t>(proxies.records.size()), call.sorted);
+    void sort(std::vector<PairKey>& keys, ParallelFor parallelFor = serialFor) {
+        radixSort(keys, static_cast<std::uint32_t>(proxies.records.size()), call.sorted,
+                  parallelFor);
     }
     void sortAndUnite(std::vector<PairKey>& keys) {
         sort(keys);

@@ -99,6 +99,7 @@ void askAndMakeRoom(PairState<Scalar>& pairs, PairFilter filter, ParallelFor par
     if (!pairs.known.arePairs()) {
         askFilter(pairs, filter, parallelFor);
     }
+    pairs.sort(pairs.call.ended, parallelFor);  // and so what died
     makeRoomForAnswers(pairs, pairs.updateChanges);
 }
 
@@ -107,9 +108,15 @@ template <class Scalar>
 void publish(PairState<Scalar>& pairs,
              bool isFiled) noexcept {  // NOLINT(bugprone-exception-escape)
     KnownPairs& known = pairs.known;
-    for (const PairKey key : pairs.call.ended) {
-        pairs.endPair(key);
-        known.kept.erase(key);
+    if (known.areAllPairs()) {
+        pairs.call.died.insert(pairs.call.died.end(), pairs.call.ended.begin(),
+                               pairs.call.ended.end());
+        known.count -= pairs.call.ended.size();
+    } else {
+        for (const PairKey key : pairs.call.ended) {
+            pairs.endPair(key);
+            known.kept.erase(key);
+        }
     }
     for (const PairKey key : pairs.call.keptNow) {
         known.kept.findOrInsert(key);

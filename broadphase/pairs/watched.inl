@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace hashphase::detail {
 
@@ -31,6 +32,19 @@ std::span<const IndexPair> selectApart(SearchScratch<Scalar>& scratch,
     };
     scratch.parts.collect(parallelFor, candidates.size(), kGrain, scratch.selected, none, select);
     return scratch.selected.pairs();
+}
+
+// Adds the keys of the pairs, of which the proxies are numbered, in their order.
+inline void listKeys(std::span<const IndexPair> pairs, const std::uint32_t* proxyIndices,
+                     std::vector<PairKey>& keys, ParallelFor parallelFor) {
+    constexpr std::size_t kGrain = 4096;
+    const std::size_t first = keys.size();
+    keys.resize(first + pairs.size());
+    parallelFor(pairs.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            keys[first + i] = pairKey(proxyIndices[pairs[i].a], proxyIndices[pairs[i].b]);
+        }
+    });
 }
 
 // Where only a few share a cell, what may not pair is sooner taken out of what a search has found, where

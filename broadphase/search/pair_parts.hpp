@@ -21,6 +21,9 @@ public:
     template <class Search>
     void collect(ParallelFor parallelFor, std::size_t count, std::size_t grain, PairList& found,
                  KernelCost& cost, const Search& search) {
+        if (count == 0) {
+            return;
+        }
         const std::size_t chunkCount = (count + grain - 1) / grain;
         parts_.resize(std::max(parts_.size(), chunkCount));
         for (std::size_t i = 0; i < chunkCount; ++i) {
@@ -35,14 +38,26 @@ public:
             });
             parts_[begin].cost = own;
         });
+        std::size_t size = found.size();
         for (std::size_t i = 0; i < chunkCount; ++i) {
             cost += parts_[i].cost;
-            if (found.size() == 0) {
+            if (size == 0) {
                 found.swap(parts_[i].found);
+                size = found.size();
             } else {
-                found.append(parts_[i].found.pairs());
+                parts_[i].offset = size;
+                size += parts_[i].found.size();
             }
         }
+        if (size == found.size()) {
+            return;
+        }
+        IndexPair* const all = found.resize(size);
+        parallelFor(chunkCount, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                std::ranges::copy(parts_[i].found.pairs(), all + parts_[i].offset);
+            }
+        });
     }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
@@ -57,6 +72,7 @@ private:
     struct Part {
         PairList found;
         KernelCost cost;
+        std::size_t offset = 0;  // of what was found among all
     };
 
     std::vector<Part> parts_;

@@ -329,7 +329,8 @@ std::size_t PairCache::memoryBytes() const noexcept {
     return sizeof(*this) + static_cast<std::size_t>(pairs_.capacity()) * sizeof(btBroadphasePair) +
            ids_.memoryBytes() + links_.capacity() * sizeof(Link) + firstEdge_.memoryBytes() +
            retired_.capacity() * sizeof(Retired) + places_.capacity() * sizeof(std::uint32_t) +
-           ranks_.memoryBytes() + scratch_.capacity() * sizeof(PairSortKey);
+           (parts_ != nullptr ? parts_->memoryBytes() : 0) + ranks_.memoryBytes() +
+           scratch_.capacity() * sizeof(PairSortKey);
 }
 
 // Bullet's arrays give memory back only when they are emptied. Chains are made anew when they are
@@ -351,6 +352,7 @@ void PairCache::releaseUnusedMemory() noexcept {
     dropChains();
     retired_.shrink_to_fit();
     detail::freeArrays(links_, places_, scratch_);
+    parts_.reset();
     try {
         ranks_ = {};
         firstEdge_.shrink();

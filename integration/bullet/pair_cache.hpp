@@ -30,8 +30,10 @@
 //           missing key, and a filter that changes the cache.
 
 #include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/key_parts.hpp>
 #include <broadphase/core/query_scope.hpp>
 #include <broadphase/core/run_map.hpp>
+#include <broadphase/parallel_for.hpp>
 #include <integration/bullet/detail/proxy_ranks.hpp>
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -40,6 +42,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -151,11 +154,14 @@ public:
     /// Removes the pairs of `died` as removeOverlappingPair() does, then adds those of `born` as
     /// addAcceptedPair() does. Passes over died pairs that are missing, and born pairs that are present. The
     /// order of arrival depends only on the calls: the first born pairs take the places of the first died
-    /// ones, so that no other pair moves; further born pairs go to the end, further places are filled from
-    /// the end. Algorithms are freed when the array is in order again. With a ghost callback, or called by a
-    /// callback of processAllOverlappingPairs(), it does exactly what single calls do. Throws
-    /// std::length_error, and changes nothing, when the born pairs would make more than kMostPairs. Cost:
-    /// O(1) a pair, a third of that of single calls.
+    /// ones, so that no other pair moves; further born pairs go to the end, places that none takes are filled
+    /// from the end. Algorithms are freed when the array is in order again. With a ghost callback, or called
+    /// by a callback of processAllOverlappingPairs(), it does exactly what single calls do. Thousands of pairs
+    /// are looked up on the threads of `parallelFor`, with the same result; callbacks come on the caller's.
+    /// Throws std::length_error, and changes nothing, when the born pairs would make more than kMostPairs.
+    /// Cost: O(1) a pair, a third of that of single calls.
+    void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
+                btDispatcher* dispatcher, ParallelFor parallelFor);
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                 btDispatcher* dispatcher);
 
@@ -336,7 +342,9 @@ private:
 
     [[nodiscard]] bool isTold() const noexcept { return ghosts_ != nullptr || processDepth_ > 0; }
     void exchange(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
-                  btDispatcher* dispatcher);
+                  btDispatcher* dispatcher, const ParallelFor* onThreads);
+    void updateAny(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
+                   btDispatcher* dispatcher, const ParallelFor* onThreads);
     void updateOneByOne(std::span<const BulletProxyPair> died,
                         std::span<const BulletProxyPair> born, btDispatcher* dispatcher);
     void prefetchAhead(std::span<const BulletProxyPair> pairs, std::size_t i) const;
@@ -344,8 +352,12 @@ private:
     void vacateAll(std::span<const BulletProxyPair> died, btDispatcher* dispatcher);
     void makeRoomFor(std::size_t bornCount);
     void vacateAll(std::span<const PairSortKey> notes, btDispatcher* dispatcher, Remover remover);
-    std::size_t settle(std::span<const BulletProxyPair> born);
-    void closeVacant(std::size_t firstVacant) noexcept;
+    void takePlace(const BulletProxyPair& born, std::uint32_t& place, std::uint32_t index);
+    void settle(std::span<const BulletProxyPair> born);
+    void closeVacant() noexcept;
+    void vacateInParts(std::span<const BulletProxyPair> died, btDispatcher* dispatcher,
+                       ParallelFor parallelFor);
+    void settleInParts(std::span<const BulletProxyPair> born, ParallelFor parallelFor);
     void fill(std::uint32_t index) noexcept;
     [[nodiscard]] std::vector<PairSortKey> notesOfAll(std::span<btBroadphaseProxy* const> proxies);
 
@@ -398,7 +410,8 @@ private:
     detail::CacheWatch* watch_ = nullptr;
 
     std::vector<std::uint32_t> places_;  // scratch of batches, vacant ones; and of sort(), new ones
-    detail::ProxyRanks ranks_;           // scratch of removals
+    std::unique_ptr<detail::KeyParts> parts_;  // scratch of batches on threads
+    detail::ProxyRanks ranks_;                 // scratch of removals
     std::vector<PairSortKey> scratch_;
 };
 

@@ -9,6 +9,10 @@
 #include <broadphase/core/ensure_capacity.hpp>
 
 #include <algorithm>
+#include <atomic>
+#include <iterator>
+#include <memory>
+#include <optional>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -18,12 +22,26 @@ namespace {
 constexpr std::size_t kFar = 16;
 constexpr std::size_t kNear = 8;
 
+// Fewer births and deaths are not worth the threads.
+constexpr std::size_t kManyPairs = 4096;
+
 }  // namespace
 
 // --- Births and deaths ---------------------------------------------------------------------------
 
 void PairCache::update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                        btDispatcher* dispatcher) {
+    updateAny(died, born, dispatcher, nullptr);
+}
+
+void PairCache::update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
+                       btDispatcher* dispatcher, ParallelFor parallelFor) {
+    updateAny(died, born, dispatcher, &parallelFor);
+}
+
+void PairCache::updateAny(std::span<const BulletProxyPair> died,
+                          std::span<const BulletProxyPair> born, btDispatcher* dispatcher,
+                          const ParallelFor* onThreads) {
     checkMayChange();
     checkRoomFor(born.size());
     if (isTold()) {
@@ -31,7 +49,7 @@ void PairCache::update(std::span<const BulletProxyPair> died, std::span<const Bu
         return;
     }
     if (!died.empty() || !born.empty()) {
-        exchange(died, born, dispatcher);
+        exchange(died, born, dispatcher, onThreads);
     }
     if (order_ == PairOrder::arrival) {
         freeRetiredAsListed();
@@ -39,18 +57,38 @@ void PairCache::update(std::span<const BulletProxyPair> died, std::span<const Bu
 }
 
 void PairCache::exchange(std::span<const BulletProxyPair> died,
-                         std::span<const BulletProxyPair> born, btDispatcher* dispatcher) {
+                         std::span<const BulletProxyPair> born, btDispatcher* dispatcher,
+                         const ParallelFor* onThreads) {
     dropChainsIfMany(died.size());
+    const bool areMany = onThreads != nullptr && died.size() + born.size() >= kManyPairs &&
+                         links_.empty() && ids_.isInParts() &&
+                         key_ == &uniqueId;  // any other is asked on this thread
     places_.clear();
-    detail::ensureCapacity(places_, died.size());
+    detail::ensureCapacity(places_, std::max(died.size(), born.size()));
+    if (areMany) {
+        if (parts_ == nullptr) {
+            parts_ = std::make_unique<detail::KeyParts>();
+        }
+        parts_->reserve(std::max(died.size(), born.size()));
+    }
     try {
-        vacateAll(died, dispatcher);
+        if (areMany) {
+            vacateInParts(died, dispatcher, *onThreads);
+        } else {
+            vacateAll(died, dispatcher);
+        }
         makeRoomFor(born.size());
+        isSorted_ = isSorted_ && born.empty();
+        if (areMany) {
+            settleInParts(born, *onThreads);
+        } else {
+            settle(born);
+        }
     } catch (...) {
-        closeVacant(0);
+        closeVacant();
         throw;
     }
-    closeVacant(settle(born));
+    closeVacant();
 }
 
 void PairCache::updateOneByOne(std::span<const BulletProxyPair> died,
@@ -102,53 +140,124 @@ void PairCache::vacate(std::uint64_t ids, btDispatcher* dispatcher, Remover remo
         noteTakenOut(pair);
     }
     retire(pair, ids, dispatcher);
-    pair.m_pProxy0 = nullptr;
     places_.push_back(index);
-    isSorted_ = false;
 }
 
-// So that settle() takes no more memory.
+// Each of so many pairs gets a place: the first ones those that are vacant, the others at the end. From then on
+// nothing takes memory.
 void PairCache::makeRoomFor(std::size_t bornCount) {
+    const std::size_t more = bornCount - std::min(bornCount, places_.size());
     if (bornCount > 0) {
-        const std::size_t more = bornCount - std::min(bornCount, places_.size());
-        ids_.reserve(ids_.size() + std::max<std::size_t>(more, 1));
+        ids_.reserve(ids_.size() + more + 1);
+    }
+    ids_.addVacant(more);
+    for (std::size_t i = 0; i < more; ++i) {
+        places_.push_back(static_cast<std::uint32_t>(pairs_.size()));
+        pairs_.push_back({});
     }
 }
 
-// Adds the pairs in vacant places, as long as there are some, and returns how many it took.
-std::size_t PairCache::settle(std::span<const BulletProxyPair> born) {
-    std::size_t taken = 0;
+// A pair that is there already leaves its place vacant.
+void PairCache::takePlace(const BulletProxyPair& born, std::uint32_t& place, std::uint32_t index) {
+    btBroadphasePair& pair = pairs_[static_cast<int>(index)];
+    if (index != place) {
+        HASHPHASE_ASSERT(isNamedBy(born, pair),
+                         "Proxies that are alive have different unique ids.");
+        return;
+    }
+    name(born, pair);
+    chainPair(index);
+    place = kNone;
+}
+
+void PairCache::settle(std::span<const BulletProxyPair> born) {
     for (std::size_t i = 0; i < born.size(); ++i) {
         if (i + kFar < born.size()) {
             ids_.prefetch(born[i + kFar].ids());
         }
-        const auto end = static_cast<std::uint32_t>(pairs_.size());
-        const std::uint32_t index = taken < places_.size() ? places_[taken] : end;
-        if (const std::uint32_t known = ids_.insert(born[i].ids(), index); known != index) {
-            HASHPHASE_ASSERT(isNamedBy(born[i], pairs_[static_cast<int>(known)]),
-                             "Proxies that are alive have different unique ids.");
-            continue;
-        }
-        if (index == end) {
-            pairs_.push_back({});
-        } else {
-            chainPair(index);
-            ++taken;
-        }
-        name(born[i], pairs_[static_cast<int>(index)]);
-        isSorted_ = false;
+        takePlace(born[i], places_[i], ids_.insert(born[i].ids(), places_[i]));
     }
-    return taken;
 }
 
 // Pairs from the end take the places that are still vacant.
-void PairCache::closeVacant(std::size_t firstVacant) noexcept {
-    for (std::size_t i = firstVacant; i < places_.size(); ++i) {
+void PairCache::closeVacant() noexcept {
+    std::erase(places_, kNone);
+    for (const std::uint32_t place : places_) {
+        pairs_[static_cast<int>(place)].m_pProxy0 = nullptr;
+    }
+    for (const std::uint32_t place : places_) {
         while (pairs_.size() > 0 && pairs_[pairs_.size() - 1].m_pProxy0 == nullptr) {
             fill(static_cast<std::uint32_t>(pairs_.size()) - 1);
         }
-        if (places_[i] < static_cast<std::uint32_t>(pairs_.size())) {
-            fill(places_[i]);
+        if (place < static_cast<std::uint32_t>(pairs_.size())) {
+            fill(place);
+        }
+    }
+}
+
+// --- On threads ----------------------------------------------------------------------------------
+
+// As vacate(). Where there is no memory to retire pairs, they stay.
+void PairCache::vacateInParts(std::span<const BulletProxyPair> died, btDispatcher* dispatcher,
+                              ParallelFor parallelFor) {
+    std::atomic<bool> mustRetire{false};
+    const auto noteIfToRetire = [&](std::uint32_t index) {
+        if (dispatcher != nullptr && index != kNone &&
+            pairs_[static_cast<int>(index)].m_algorithm != nullptr &&
+            !mustRetire.load(std::memory_order_relaxed)) {
+            mustRetire.store(true, std::memory_order_relaxed);
+        }
+        return index;
+    };
+    const std::span<std::uint32_t> found = parts_->search(
+        died.size(), parallelFor, [&](std::size_t i) { return died[i].ids(); },
+        [&](std::size_t i) { detail::prefetch(&pairs_[0] + ids_.prefetchKey(died[i].ids())); },
+        [&](std::size_t i) {
+            std::optional<std::uint32_t> index = ids_.vacateInPart(died[i].ids());
+            noteIfToRetire(index.value_or(kNone));
+            return index;
+        });
+    for (std::size_t i = 0; i < died.size(); ++i) {
+        if (found[i] == detail::KeyParts::kNotSearched) {
+            found[i] = noteIfToRetire(ids_.vacate(died[i].ids()));
+        }
+    }
+    if (mustRetire.load(std::memory_order_relaxed)) {
+        try {
+            detail::ensureCapacity(retired_, retired_.size() + died.size());
+        } catch (...) {
+            for (std::size_t i = 0; i < died.size(); ++i) {
+                if (found[i] != kNone) {
+                    ids_.insert(died[i].ids(), found[i]);
+                }
+            }
+            throw;
+        }
+        for (std::size_t i = 0; i < died.size(); ++i) {
+            if (found[i] != kNone) {
+                retire(pairs_[static_cast<int>(found[i])], died[i].ids(), dispatcher);
+            }
+        }
+    }
+    std::ranges::copy_if(found, std::back_inserter(places_),
+                         [](std::uint32_t index) { return index != kNone; });
+}
+
+// As settle().
+void PairCache::settleInParts(std::span<const BulletProxyPair> born, ParallelFor parallelFor) {
+    const std::span<const std::uint32_t> found = parts_->search(
+        born.size(), parallelFor, [&](std::size_t i) { return born[i].ids(); },
+        [&](std::size_t i) { detail::prefetch(&pairs_[0] + places_[i]); },
+        [&](std::size_t i) {
+            std::optional<std::uint32_t> index = ids_.insertInPart(born[i].ids(), places_[i]);
+            if (index) {
+                takePlace(born[i], places_[i], *index);
+            }
+            return index;
+        });
+    for (std::size_t i = 0; i < born.size(); ++i) {
+        if (found[i] == detail::KeyParts::kNotSearched) {
+            takePlace(born[i], places_[i], ids_.insert(born[i].ids(), places_[i]));
         }
     }
 }
@@ -179,10 +288,10 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
     try {
         vacateAll(notes, dispatcher, remover);
     } catch (...) {
-        closeVacant(0);
+        closeVacant();
         throw;
     }
-    closeVacant(0);
+    closeVacant();
     scratch_ = std::move(notes);
     freeRetiredAsListed();
 }

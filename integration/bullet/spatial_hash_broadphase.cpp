@@ -357,7 +357,11 @@ void SpatialHashBroadphase::applyToCache(std::span<const BulletProxyPair> died,
     const Applying applying(*this, !died.empty() || !born.empty());
     cacheChangeCount_ += !died.empty() || !born.empty() ? 1 : 0;
     if (watch_.cache != nullptr) {
-        watch_.cache->update(died, born, dispatcher);
+        if (config_.parallelFor) {
+            watch_.cache->update(died, born, dispatcher, config_.parallelFor);
+        } else {
+            watch_.cache->update(died, born, dispatcher);
+        }
         return;
     }
     for (const BulletProxyPair& pair : died) {

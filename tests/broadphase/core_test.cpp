@@ -3,12 +3,16 @@
 // Small parts of the core, each against something slower.
 
 #include <broadphase/core/flat_set.hpp>
+#include <broadphase/core/key_parts.hpp>
 #include <broadphase/core/limits.hpp>
 #include <broadphase/core/radix_sort.hpp>
 #include <broadphase/core/run_map.hpp>
 #include <broadphase/core/stable_array.hpp>
+#include <broadphase/hash/bucket_sort.hpp>
+#include <broadphase/simd/kernel_types.hpp>
 #include <broadphase/simd/tag_kernel.hpp>
 #include <tests/support/random.hpp>
+#include <tests/support/threaded_for.hpp>
 
 #include <gtest/gtest.h>
 
@@ -16,7 +20,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <new>
 #include <random>
+#include <set>
+#include <span>
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
@@ -30,15 +38,72 @@ TEST(RadixSort, SortsAsComparisonsDo) {
     test::Random random(0x5eed0601);
     std::vector<std::uint64_t> scratch;
     for (const std::uint32_t bound : {1U, 2U, 300U, 2048U, 2049U, 100'000U, 1U << 31, ~0U}) {
-        for (const std::size_t count : {0, 1, 2, 255, 256, 257, 5000}) {
+        for (const std::size_t count : {0, 1, 2, 255, 256, 257, 4095, 4096, 50'000}) {
             std::vector<std::uint64_t> keys;
             for (std::size_t i = 0; i < count; ++i) {
                 keys.push_back(std::uint64_t{random.below(bound)} << 32 | random.below(bound));
             }
             std::vector<std::uint64_t> expected = keys;
             std::sort(expected.begin(), expected.end());
+            std::vector<std::uint64_t> onThreads = keys;
             radixSort(keys, bound, scratch);
             ASSERT_EQ(keys, expected) << count << " keys below " << bound;
+            test::ThreadedFor threadedFor(3, count);
+            radixSort(onThreads, bound, scratch, threadedFor);
+            ASSERT_EQ(onThreads, expected) << count << " keys below " << bound;
+        }
+    }
+}
+
+TEST(BucketSort, SortsOnThreadsAsOnOne) {
+    test::Random random(0x5eed0602);
+    for (const std::uint32_t bucketCount : {1U, 31U, 500U, 100'000U}) {
+        for (const std::size_t count : {1, 2048, 2049, 30'000}) {
+            std::vector<std::uint32_t> wanted(count);
+            for (std::uint32_t& bucket : wanted) {
+                bucket = random.below(8) == 0 ? kNoBucket : random.below(bucketCount);
+            }
+            std::vector<std::uint32_t> starts(bucketCount + 1);
+            std::vector<std::uint32_t> order;
+            const auto sort = [&](ParallelFor parallelFor) {
+                std::vector<std::uint32_t> buckets(count);
+                std::vector<std::uint32_t> scratch;
+                BucketSort sorting;
+                sorting.count(
+                    buckets, std::span(starts).first(bucketCount), scratch,
+                    [&](std::size_t first, std::size_t last) {
+                        std::copy(wanted.begin() + std::ptrdiff_t(first),
+                                  wanted.begin() + std::ptrdiff_t(last),
+                                  buckets.begin() + std::ptrdiff_t(first));
+                    },
+                    parallelFor);
+                return sorting.sort(buckets, starts, scratch, order, parallelFor);
+            };
+            std::uint32_t most = 0;
+            std::uint32_t place = 0;
+            std::vector<std::uint32_t> expectedStarts;
+            std::vector<std::vector<std::uint32_t>> boxesOf(bucketCount);
+            for (std::uint32_t box = 0; box < count; ++box) {
+                if (wanted[box] != kNoBucket) {
+                    boxesOf[wanted[box]].push_back(box);
+                }
+            }
+            std::vector<std::uint32_t> expectedOrder;
+            for (const std::vector<std::uint32_t>& boxes : boxesOf) {
+                expectedStarts.push_back(place);
+                place += static_cast<std::uint32_t>(boxes.size());
+                expectedOrder.insert(expectedOrder.end(), boxes.begin(), boxes.end());
+                most = std::max(
+                    most, &boxes == &boxesOf.back() ? 0 : static_cast<std::uint32_t>(boxes.size()));
+            }
+            expectedStarts.push_back(place);
+            test::ThreadedFor threadedFor(3, count);
+            for (const ParallelFor parallelFor :
+                 {ParallelFor(serialFor), ParallelFor(threadedFor)}) {
+                ASSERT_EQ(sort(parallelFor), most) << count << " boxes, " << bucketCount;
+                ASSERT_EQ(starts, expectedStarts) << count << " boxes, " << bucketCount;
+                ASSERT_EQ(order, expectedOrder) << count << " boxes, " << bucketCount;
+            }
         }
     }
 }
@@ -202,6 +267,81 @@ TEST(FlatSet, AgreesWithUnorderedSetOverRandomOperations) {
         ASSERT_EQ(round % 10 == 0 ? set.validate() : "", "") << round;
     }
     EXPECT_GT(expected.size(), 100U);
+}
+
+// Does half of a loop, and has no memory for the rest.
+void failingFor(std::size_t count, std::size_t /*grain*/, LoopBody body) {
+    body(0, (count + 1) / 2);
+    throw std::bad_alloc();
+}
+
+// Some of the keys are there, some are not, and some come twice. The set is as full as it may be, so that searches
+// leave their parts.
+TEST(FlatSet, DoesInPartsWhatItDoesOneByOne) {
+    FlatSet set;
+    set.reserve(FlatSet::kParts * 9);
+    const std::size_t capacity = set.capacity();
+    ASSERT_TRUE(set.isInParts());
+    std::unordered_set<std::uint64_t> expected;
+    std::mt19937_64 random(22);
+    KeyParts parts;
+    std::size_t elsewhereCount = 0;
+    // Returns what find(i), or where it is elsewhere findAnywhere(i), has found.
+    const auto search = [&](const std::vector<std::uint64_t>& keys, ParallelFor parallelFor,
+                            const auto& find, const auto& findAnywhere) {
+        parts.reserve(keys.size());
+        const auto found = parts.search(
+            keys.size(), parallelFor, [&](std::size_t i) { return keys[i]; }, [](std::size_t) {},
+            find);
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            if (found[i] == KeyParts::kNotSearched) {
+                ++elsewhereCount;
+                found[i] = findAnywhere(i);
+            }
+        }
+        return std::vector<std::uint32_t>(found.begin(), found.end());
+    };
+    for (int round = 0; round < 300; ++round) {
+        test::ThreadedFor threadedFor(3, random());
+        const std::array<ParallelFor, 3> loops{serialFor, failingFor, threadedFor};
+        const ParallelFor parallelFor = loops[std::size_t(round) % 3];
+        std::vector<std::uint64_t> keys(random() % 5000);
+        std::ranges::generate(keys, [&] { return randomKey(random); });
+        std::vector<std::uint32_t> numbers;
+        const std::vector<std::uint32_t> vacated = search(
+            keys, parallelFor, [&](std::size_t i) { return set.vacateInPart(keys[i]); },
+            [&](std::size_t i) { return set.vacate(keys[i]); });
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            ASSERT_EQ(vacated[i] != FlatSet::kNone, expected.erase(keys[i]) == 1);
+            if (vacated[i] != FlatSet::kNone) {
+                numbers.push_back(vacated[i]);
+            }
+        }
+        while (set.size() + 1 < capacity) {
+            numbers.push_back(static_cast<std::uint32_t>(set.size()));
+            set.addVacant(1);
+        }
+        keys.resize(numbers.size());
+        std::ranges::generate(keys, [&] { return randomKey(random); });
+        const std::vector<std::uint32_t> inserted = search(
+            keys, parallelFor, [&](std::size_t i) { return set.insertInPart(keys[i], numbers[i]); },
+            [&](std::size_t i) { return set.insert(keys[i], numbers[i]); });
+        std::set<std::uint32_t, std::greater<>> left;
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            const bool isNew = expected.insert(keys[i]).second;
+            ASSERT_EQ(inserted[i] == numbers[i], isNew);
+            if (!isNew) {
+                left.insert(numbers[i]);
+            }
+        }
+        for (const std::uint32_t number : left) {
+            set.fill(number);
+        }
+        ASSERT_EQ(set.validate(), "") << round;
+        ASSERT_EQ(set.size(), expected.size());
+        ASSERT_EQ(set.capacity(), capacity);
+    }
+    EXPECT_GT(elsewhereCount, 1000U);
 }
 
 TEST(FlatSet, RenumbersItsKeys) {

@@ -3,6 +3,7 @@
 // What the pair cache does in batches against what it does in single calls.
 
 #include <tests/integration/bullet/cache_side.hpp>
+#include <tests/support/threaded_for.hpp>
 
 #include <gtest/gtest.h>
 
@@ -28,6 +29,18 @@ std::vector<Uids> somePairs(std::mt19937& random, std::size_t most) {
         pair.first = static_cast<int>(random() % CacheSide::kProxies);
         pair.second =
             static_cast<int>((std::size_t(pair.first) + 1 + random() % 9) % CacheSide::kProxies);
+    }
+    return pairs;
+}
+
+/// So many pairs of any two, some of them there and some not, some twice.
+std::vector<Uids> anyPairs(std::mt19937& random, std::size_t count) {
+    std::vector<Uids> pairs(count);
+    for (Uids& pair : pairs) {
+        pair.first = static_cast<int>(random() % CacheSide::kProxies);
+        pair.second =
+            static_cast<int>((std::size_t(pair.first) + 1 + random() % (CacheSide::kProxies - 1)) %
+                             CacheSide::kProxies);
     }
     return pairs;
 }
@@ -93,6 +106,31 @@ INSTANTIATE_TEST_SUITE_P(Orders, PairCacheBatches,
                                          std::pair{PairOrder::arrival, true},
                                          std::pair{PairOrder::canonical, false},
                                          std::pair{PairOrder::canonical, true}));
+
+// Thousands of pairs of two sides of which one is on threads: the arrays are the same, to the last bit.
+TEST(PairCacheBatch, IsTheSameOnAnyNumberOfThreads) {
+    std::mt19937 random(33);
+    for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
+        CacheSide alone(order);
+        CacheSide onThreads(order);
+        for (int round = 0; round < 40; ++round) {
+            SCOPED_TRACE(round);
+            const std::vector<Uids> died = anyPairs(random, 4000);
+            const std::vector<Uids> born = anyPairs(random, 5000);
+            ThreadedFor threadedFor(1 + std::size_t(round) % 4, random());
+            alone.update(died, born);
+            onThreads.cache.update(onThreads.pairs(died), onThreads.pairs(born),
+                                   &onThreads.dispatcher, threadedFor);
+            EXPECT_TRUE(round == 0 || threadedFor.mostRanges() > 1) << "it is worth the threads";
+            ASSERT_EQ(onThreads.cache.validate(), "");
+            ASSERT_EQ(onThreads.list(), alone.list());
+            ASSERT_EQ(onThreads.freed, alone.freed);
+            alone.giveAlgorithms(hasNoAlgorithm);
+            onThreads.giveAlgorithms(hasNoAlgorithm);
+        }
+        EXPECT_GT(alone.freed.size(), 10'000U);
+    }
+}
 
 TEST(PairCacheBatch, LetsBirthsTakeThePlacesOfDeathsAndMovesNothingElse) {
     CacheSide side;
