@@ -3,7 +3,9 @@
 // Memory runs out at every allocation of ours; Bullet's own arrays have memory of their own.
 
 #include <tests/integration/bullet/boxes.hpp>
+#include <tests/integration/bullet/cache_side.hpp>
 #include <tests/support/out_of_memory.hpp>
+#include <tests/support/threaded_for.hpp>
 
 #include <gtest/gtest.h>
 
@@ -189,6 +191,58 @@ TEST(BulletOutOfMemory, TearsNothing) {
             EXPECT_GE(failures, each.leastFailures);
             EXPECT_TRUE(!each.isMost || failures == each.leastFailures);
         }
+    }
+}
+
+/// Thousands of births and deaths at once.
+struct ScarceBatch : CacheSide {
+    explicit ScarceBatch(PairOrder order) : CacheSide(order) {
+        std::vector<Uids> all;
+        for (int a = 0; a < int(kProxies); ++a) {
+            for (int b = a + 1; b < int(kProxies); ++b) {
+                all.emplace_back(a, b);
+            }
+        }
+        const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
+        died = pairs({all.begin(), middle});
+        born = pairs({middle, all.end()});
+        cache.update({}, died, &dispatcher);
+        giveAlgorithms();
+        freed.reserve(all.size());
+    }
+    void run() { cache.update(died, born, &dispatcher, threadedFor); }
+
+    std::vector<BulletProxyPair> died;
+    std::vector<BulletProxyPair> born;
+    ThreadedFor threadedFor{3, 7};
+};
+
+TEST(BulletOutOfMemory, ABatchOnThreadsHasRemovedSomeAndAddedNoneAndIsRepeated) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "this program has another `new`";
+    }
+    for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
+        const std::size_t failures = runOutOfMemory(
+            [&] { return std::make_unique<ScarceBatch>(order); },
+            [](ScarceBatch& batch) { batch.run(); },
+            [](ScarceBatch& batch, std::size_t) {
+                ASSERT_EQ(batch.cache.validate(), "");
+                const bool isDone =
+                    batch.cache.findPair(batch.born[0].lower(), batch.born[0].upper()) != nullptr;
+                const auto countLeft = std::size_t(batch.cache.getNumOverlappingPairs());
+                EXPECT_TRUE(isDone ? countLeft == batch.born.size()
+                                   : countLeft <= batch.died.size());
+                batch.run();
+                ASSERT_EQ(batch.cache.validate(), "");
+                const std::vector<Uids> left = inOrder(batch.list());
+                EXPECT_EQ(left.size(), batch.born.size());
+                EXPECT_EQ(batch.freed.size(), batch.died.size())
+                    << "no algorithm is lost, or freed twice";
+                for (const BulletProxyPair& pair : batch.born) {
+                    ASSERT_NE(batch.cache.findPair(pair.lower(), pair.upper()), nullptr);
+                }
+            });
+        EXPECT_GE(failures, 10U);
     }
 }
 
