@@ -4,6 +4,7 @@
 // Runs the loops of the broadphase on the threads of Bullet's task scheduler: see btSetTaskScheduler().
 // Without a scheduler, as in a Bullet built without threads, they run on the caller's thread.
 
+#include <broadphase/core/first_exception.hpp>
 #include <broadphase/parallel_for.hpp>
 
 #include <LinearMath/btThreads.h>
@@ -16,14 +17,17 @@
 
 namespace hashphase {
 
-/// A ParallelFor: config.parallelFor = hashphase::bulletFor.
+/// A ParallelFor: config.parallelFor = hashphase::bulletFor. What a thread of Bullet's throws, as std::bad_alloc,
+/// is thrown on the caller's when all have ended.
 inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
     struct Body : btIParallelForBody {
         const LoopBody& loop;
+        detail::FirstException& exception;
 
-        explicit Body(const LoopBody& itsLoop) : loop(itsLoop) {}
+        Body(const LoopBody& itsLoop, detail::FirstException& ofAny)
+            : loop(itsLoop), exception(ofAny) {}
         void forLoop(int begin, int end) const override {
-            loop(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+            exception.run(loop, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
         }
     };
     constexpr std::size_t kMost = std::numeric_limits<int>::max();
@@ -33,8 +37,11 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
     if (btGetTaskScheduler() == nullptr || count > kMost) {  // more than Bullet can count
         body(0, count);
     } else {
+        detail::FirstException exception;
         btParallelFor(0, static_cast<int>(count),
-                      static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)), Body(body));
+                      static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)),
+                      Body(body, exception));
+        exception.rethrow();
     }
 }
 

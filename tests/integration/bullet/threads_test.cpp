@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 namespace hashphase::test {
@@ -50,6 +51,32 @@ TEST(BulletFor, RunsEveryIterationOnce) {
         });
         EXPECT_EQ(std::ranges::count(times, 1), static_cast<std::ptrdiff_t>(count));
     }
+}
+
+TEST(BulletFor, ThrowsWhatALoopThrows) {
+    const auto fail = [](std::size_t, std::size_t) {
+        throw std::runtime_error("as one part does");
+    };
+    EXPECT_THROW(bulletFor(1000, 16, fail), std::runtime_error);
+}
+
+// Debian's Bullet has no threads.
+TEST(FirstException, IsKeptWhileOtherThreadsEnd) {
+    ThreadedFor threadedFor(3, 0x5eed0903);
+    std::vector<int> times(1000, 0);
+    detail::FirstException exception;
+    EXPECT_NO_THROW(exception.rethrow());
+    threadedFor(times.size(), 16, [&](std::size_t first, std::size_t last) {
+        const auto body = [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                ++times[i];
+            }
+            throw std::runtime_error("as each part does");
+        };
+        exception.run(body, first, last);
+    });
+    EXPECT_THROW(exception.rethrow(), std::runtime_error);
+    EXPECT_EQ(std::ranges::count(times, 1), 1000);
 }
 
 }  // namespace
