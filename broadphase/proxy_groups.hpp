@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/export.hpp>
 #include <cstdint>
 
 namespace hashphase {
