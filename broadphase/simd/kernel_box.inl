@@ -106,10 +106,10 @@ template <class Pack, class Scalar>
 class RayPartLanes {
 public:
     explicit RayPartLanes(const RayPart<Scalar>& part)
-        : sieve_(part.sieve), last_(Pack::broadcast(part.last)) {
-        const std::uint32_t sieve = part.sieve % 3;
-        low_ = Pack::broadcast(part.bounds[sieve]);
-        high_ = Pack::broadcast(part.bounds[sieve + 3]);
+        : sieve_(part.sieve),
+          low_(Pack::broadcast(part.bounds[part.sieve % 3])),
+          high_(Pack::broadcast(part.bounds[part.sieve % 3 + 3])),
+          last_(Pack::broadcast(part.last)) {
         for (int k = 0; k < 3; ++k) {
             lowFrom_[k] = Pack::broadcast(part.lowFrom[k]);
             highFrom_[k] = Pack::broadcast(part.highFrom[k]);
