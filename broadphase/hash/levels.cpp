@@ -313,12 +313,4 @@ std::size_t SizeCensus::memoryBytes() const noexcept {
            density_.memoryBytes();
 }
 
-LevelSizes fixedLevels(double cellSize, double ratio) {
-    LevelSizes levels;
-    for (; levels.count < kMaxLevels && cellSize <= 1e30; cellSize *= ratio) {
-        levels.cellSize[static_cast<std::size_t>(levels.count++)] = cellSize;
-    }
-    return levels;
-}
-
 }  // namespace hashphase::detail

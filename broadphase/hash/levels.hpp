@@ -123,6 +123,12 @@ private:
 };
 
 /// Levels of a fixed finest cell size: that size, and coarser ones by `ratio` for what is larger.
-[[nodiscard]] LevelSizes fixedLevels(double cellSize, double ratio);
+[[nodiscard]] inline LevelSizes fixedLevels(double cellSize, double ratio) {
+    LevelSizes levels;
+    for (; levels.count < kMaxLevels && cellSize <= 1e30; cellSize *= ratio) {
+        levels.cellSize[static_cast<std::size_t>(levels.count++)] = cellSize;
+    }
+    return levels;
+}
 
 }  // namespace hashphase::detail
