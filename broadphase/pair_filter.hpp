@@ -41,7 +41,7 @@ public:
 
     template <std::convertible_to<OfOne> Ask>
     PairFilter(Ask&& ask HASHPHASE_LIFETIME_BOUND) noexcept  // NOLINT: conversion is its purpose
-        : ask_(ask, askEach) {}
+        : ask_(ask, kAskEach) {}
 
     template <class Ask>
         requires(!std::is_same_v<std::remove_cvref_t<Ask>, PairFilter> &&
@@ -56,8 +56,8 @@ public:
     }
 
 private:
-    static constexpr auto askEach = [](auto& ask, std::span<const ProxyPair> asked,
-                                       std::span<char> accepted) {
+    static constexpr auto kAskEach = [](auto& ask, std::span<const ProxyPair> asked,
+                                        std::span<char> accepted) {
         for (std::size_t i = 0; i < asked.size(); ++i) {
             accepted[i] = ask(asked[i].first, asked[i].second) ? 1 : 0;
         }

@@ -20,6 +20,7 @@ public:
             room_.resize(count);
         }
     }
+    // NOLINTNEXTLINE(readability-identifier-naming): named as std::vector's
     [[gnu::always_inline]] void push_back(const Item& item) noexcept {
         HASHPHASE_ASSERT(size_ < room_.size(), "There is room for the item.");
         room_.data()[size_++] = item;
