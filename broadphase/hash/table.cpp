@@ -110,10 +110,11 @@ void Table<Scalar>::computeExtents() {
     for (Level<Scalar>& level : levels_) {
         for (std::size_t axis = 0; level.hasCells() && level.count() > 0 && axis < 3; ++axis) {
             const auto rangeOf = [&](std::size_t column) {
-                std::array<Scalar, 2> range{};
+                Scalar least{};
+                Scalar most{};
                 kernels<Scalar>().findRange(bounds_[column].data(), level.firstEntry,
-                                            level.lastEntry, &range[0], &range[1]);
-                return range;
+                                            level.lastEntry, &least, &most);
+                return std::array{least, most};
             };
             const bool isFlat = level.inverseCellSize[axis] == 0;
             if (level.isDense() && !isFlat) {
@@ -166,29 +167,26 @@ void Table<Scalar>::findBuckets(std::span<const PaddedBox<Scalar>> boxes, const 
         using Layout = LevelLayout<Scalar>;
         return strays > 2 * usual + Layout::kThinLevel + boxes.size() / kBoxesPerStray;
     };
-    const auto choose = [&] {
-        layout_->choose(boxes, fixed);
-        layOut(boxes);
-        strayCount_ = countBuckets(boxes, parallelFor);
-        straysWhenChosen_ = strayCount_;
-        listedWhenChosen_ = bucketStart_[levels_.back().firstBucket];
-    };
     // Every search reads all of them.
     const auto areTooManyListed = [&] {
         return bucketStart_[levels_.back().firstBucket] >
                2 * listedWhenChosen_ + LevelLayout<Scalar>::kThinLevel;
     };
-    if (layout_->isTimeToChoose(boxes.size()) || levels_.empty()) {
-        choose();
-    } else if (areMany(countBuckets(boxes, parallelFor), strayCount_)) {
+    bool mustChoose = layout_->isTimeToChoose(boxes.size()) || levels_.empty();
+    if (!mustChoose && areMany(countBuckets(boxes, parallelFor), strayCount_)) {
         layOut(boxes);
         strayCount_ = countBuckets(boxes, parallelFor);
         // Boxes that have outgrown their cells are strays wherever these lie.
-        if (areMany(strayCount_, straysWhenChosen_)) {
-            choose();
-        }
-    } else if (areTooManyListed()) {
-        choose();
+        mustChoose = areMany(strayCount_, straysWhenChosen_);
+    } else if (!mustChoose) {
+        mustChoose = areTooManyListed();
+    }
+    if (mustChoose) {
+        layout_->choose(boxes, fixed);
+        layOut(boxes);
+        strayCount_ = countBuckets(boxes, parallelFor);
+        straysWhenChosen_ = strayCount_;
+        listedWhenChosen_ = bucketStart_[levels_.back().firstBucket];
     }
 }
 
