@@ -3,7 +3,6 @@
 
 // Finds what a ray may meet, from near to far.
 
-#include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
 #include <broadphase/query_cost.hpp>
 #include <broadphase/regions.hpp>
@@ -19,9 +18,7 @@ namespace hashphase::detail {
 /// which is no larger, or a negative number or NaN, which ends the search. Returns false when it
 /// has.
 template <class Scalar>
-HASHPHASE_BROADPHASE_EXPORT bool searchRay(const BoxTree& tree, const RayRegion<Scalar>& region,
-                                           double limit,
-                                           FunctionRef<double(std::span<const std::uint32_t>)> take,
-                                           QueryCost& cost);
+bool searchRay(const BoxTree& tree, const RayRegion<Scalar>& region, double limit,
+               FunctionRef<double(std::span<const std::uint32_t>)> take, QueryCost& cost);
 
 }  // namespace hashphase::detail

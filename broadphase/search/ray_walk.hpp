@@ -3,7 +3,6 @@
 
 // Finds what a ray may meet in the cells of a table: for few rays, which are not worth a tree.
 
-#include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
 #include <broadphase/hash/table.hpp>
 #include <broadphase/query_cost.hpp>
@@ -18,8 +17,7 @@ namespace hashphase::detail {
 /// boxes, these are tested one after another. What is handed to take() at a time is sorted from near to far.
 /// An entry may be erased meanwhile. Allocates nothing.
 template <class Scalar>
-HASHPHASE_BROADPHASE_EXPORT bool searchCells(
-    const Table<Scalar>& table, const RayRegion<Scalar>& region, double limit,
-    FunctionRef<double(std::span<const std::uint32_t>)> take, QueryCost& cost);
+bool searchCells(const Table<Scalar>& table, const RayRegion<Scalar>& region, double limit,
+                 FunctionRef<double(std::span<const std::uint32_t>)> take, QueryCost& cost);
 
 }  // namespace hashphase::detail
