@@ -177,11 +177,15 @@ void Population<Scalar>::dropLastRecords() {
         groups.resize(2 * std::max<std::size_t>(records.size(), 1));
     }
     free = {};
-    // First those that are in the list of changes, in which there is no room for others in their place.
-    std::stable_partition(proxyIndices.begin(), proxyIndices.end(),
-                          [this](std::uint32_t index) { return isWaiting(records[index]); });
-    for (; !proxyIndices.empty(); proxyIndices.pop_back()) {
-        append(proxyIndices.back(), free);
+    // First those that are in the list of changes, in which there is no room for others in their place. What
+    // is appended last is given away first.
+    for (const bool isInList : {false, true}) {
+        for (auto proxyIndex = proxyIndices.rbegin(); proxyIndex != proxyIndices.rend();
+             ++proxyIndex) {
+            if (isWaiting(records[*proxyIndex]) == isInList) {
+                append(*proxyIndex, free);
+            }
+        }
     }
 }
 
