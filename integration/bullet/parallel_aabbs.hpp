@@ -31,11 +31,11 @@ namespace hashphase {
 namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// The boxes of a world's objects, as btCollisionWorld::updateSingleAabb() computes them.
-class HASHPHASE_BULLET_EXPORT WorldAabbs {
+class WorldAabbs {
 public:
     /// Does what btCollisionWorld::updateAabbs() does. Returns false, and has done nothing, where it is not
     /// to be done on several threads.
-    [[nodiscard]] bool update(btCollisionWorld& world);
+    [[nodiscard]] HASHPHASE_BULLET_EXPORT bool update(btCollisionWorld& world);
 
 private:
     void compute(btCollisionWorld& world, int number);

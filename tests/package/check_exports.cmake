@@ -11,7 +11,7 @@ string(CONCAT offered
        "(CameraInverse|FewPairs|Kernels|Motions<|PairState<|Population<|QueryScope|Store<|Table<|"
        "firstContactExactly|instructionSet|isAvailable|kernels|nameOf|"
        "raise(InvalidArgument|LengthError)|reportBrokenAssert|reportMessage|"
-       "search(Boxes|Volume)|useInstructionSet)")
+       "search(Boxes|Volume)|useInstructionSet|f(32|64)::WorldAabbs::update)")
 
 string(REPLACE "," ";" libraries "${LIBRARIES}")
 foreach(library IN LISTS libraries)
