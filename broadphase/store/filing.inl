@@ -104,16 +104,18 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
 
 template <class Scalar>
 bool Store<Scalar>::settleIdle(ParallelFor parallelFor) {
+    constexpr std::uint32_t kUpdatesPerSettling = 8;
     const std::size_t filedCount = tables.resting.size() - tables.restingErased;
     const bool withSlack = isWorthSlack();
     const std::uint32_t calmCount = withSlack ? settling->calmCount : 0;
     const std::uint32_t joining = frame.idleCount + calmCount;
-    tables.idleUpdates += frame.idleCount + updatesObserved() * calmCount;
+    tables.idleUpdates += frame.idleCount + kUpdatesPerSettling * updatesObserved() * calmCount;
     if (observesNow()) {
         observedEach =
             withSlack ? kOftenObserved : std::min<std::uint8_t>(observedEach + 1, kSeldomObserved);
     }
-    // To file one takes about as long as an update of a mobile one.
+    // To file one takes about as long as an update of a mobile one among its like, and an eighth of one among
+    // many that are settled.
     if (std::max(joining, tables.restingErased) < worthRefiling(filedCount) &&
         tables.idleUpdates < kFewIdle + filedCount + joining) {
         return false;

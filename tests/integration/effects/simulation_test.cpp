@@ -22,7 +22,7 @@ TEST(Simulation, FilesExactlyWhatMoves) {
     for (int i = 0; i < 500; ++i) {
         const bool moves = static_cast<std::uint64_t>(i) < kMoving;
         simulation.add({.position = {3.0F * static_cast<float>(i), 0, 0},
-                        .velocity = {0, 1, 0},
+                        .velocity = {0, 60, 0},  // too fast to settle
                         .effects = moves ? EffectSet::all() : kStanding});
     }
     simulation.advance(kStep);  // all are new
