@@ -151,6 +151,19 @@ TYPED_TEST(Settled, LeaveTheirSlackAtAnyTime) {
     }
 }
 
+// Few wait, among many that are settled, no longer than it takes to see that they are calm.
+TYPED_TEST(Settled, SettleAgainSoonWhereTheyHaveBeenPut) {
+    TremblingWorld<TypeParam> world;
+    world.play(100);
+    for (std::size_t i = 0; i < 6; ++i) {
+        world.proxies[i].home = world.proxies[i + 100].home;
+    }
+    world.play(1);
+    EXPECT_LE(world.cost().resting, world.kCount - 6);
+    world.play(40);
+    EXPECT_GE(world.cost().resting, world.kCount - 2) << "but for who has just left";
+}
+
 TYPED_TEST(Settled, MeetWhatTravelsWhatStandsAndWhatComes) {
     TremblingWorld<TypeParam> world;
     world.addMany(60, spreadScene<TypeParam>("static", 1, 0).draw, 1);
