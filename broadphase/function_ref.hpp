@@ -8,19 +8,12 @@
 //     visitAll([&](ProxyId id) { ... });                     // right: the lambda lives until the call ends
 //     FunctionRef<void(ProxyId)> visit = [&](ProxyId) { };   // wrong: the lambda is gone after this line
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/export.hpp>
 
 #include <memory>
 #include <type_traits>
 #include <utility>
-
-// Marks a parameter to which the new object keeps a reference. Clang then warns where the argument is a
-// temporary that dies before the object.
-#if __has_cpp_attribute(clang::lifetimebound)
-#define HASHPHASE_LIFETIME_BOUND [[clang::lifetimebound]]
-#else
-#define HASHPHASE_LIFETIME_BOUND
-#endif
 
 namespace hashphase {
 
@@ -38,7 +31,7 @@ public:
         requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
     // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): copies are ruled out above
-    FunctionRef(Callable&& callable HASHPHASE_LIFETIME_BOUND)
+    FunctionRef(Callable&& callable [[HASHPHASE_LIFETIME_BOUND]])
     noexcept
         : FunctionRef(callable, [](auto& called, Arguments... arguments) -> Result {
               return called(std::forward<Arguments>(arguments)...);
@@ -49,7 +42,7 @@ public:
     template <class Callable, class Adapter>
         requires(std::is_empty_v<Adapter>&&
                      std::is_invocable_r_v<Result, Adapter, Callable&, Arguments...>)
-    FunctionRef(Callable&& callable HASHPHASE_LIFETIME_BOUND, Adapter /*adapter*/)
+    FunctionRef(Callable&& callable [[HASHPHASE_LIFETIME_BOUND]], Adapter /*adapter*/)
     noexcept {
         using Target = std::remove_reference_t<Callable>;
         if constexpr (std::is_function_v<Target>) {

@@ -96,7 +96,7 @@ public:
 
     /// Sets the proxy's box. A box that is equal to the present one, bit by bit, costs a comparison and marks
     /// nothing. Cost: O(1) amortised.
-    [[gnu::always_inline]] void move(ProxyId id, const Box& box) {
+    [[HASHPHASE_ALWAYS_INLINE]] void move(ProxyId id, const Box& box) {
         HASHPHASE_ASSERT(contains(id),
                          "Only a proxy of this grid that was not removed can be moved.");
         HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);

@@ -40,13 +40,14 @@ public:
     using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
 
     template <std::convertible_to<OfOne> Ask>
-    PairFilter(Ask&& ask HASHPHASE_LIFETIME_BOUND) noexcept  // NOLINT: conversion is its purpose
+    PairFilter(Ask&& ask
+               [[HASHPHASE_LIFETIME_BOUND]]) noexcept  // NOLINT: conversion is its purpose
         : ask_(ask, kAskEach) {}
 
     template <class Ask>
         requires(!std::is_same_v<std::remove_cvref_t<Ask>, PairFilter> &&
                  !std::convertible_to<Ask, OfOne> && std::convertible_to<Ask, OfMany>)
-    PairFilter(Ask&& ask HASHPHASE_LIFETIME_BOUND)  // NOLINT: conversion is its purpose
+    PairFilter(Ask&& ask [[HASHPHASE_LIFETIME_BOUND]])  // NOLINT: conversion is its purpose
         : ask_(ask) {}
 
     /// Asks about all pairs, in one call or one by one, and writes the answers to `accepted`, which is as

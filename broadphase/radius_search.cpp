@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/radius_search.hpp>
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
-#include <broadphase/core/prefetch.hpp>
 #include <broadphase/core/query_scope.hpp>
 #include <broadphase/core/shared_cost.hpp>
 #include <broadphase/geometry/unit_scale.hpp>

@@ -16,9 +16,9 @@
 // Keys      Every key is valid. At most 2^32 - 1 of them: whoever inserts or reserves more is thrown
 //           std::length_error, and the set is as it was.
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/limits.hpp>
 #include <broadphase/core/parted_blocks.hpp>
-#include <broadphase/core/prefetch.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/tag_kernel.hpp>
 

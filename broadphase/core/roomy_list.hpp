@@ -21,7 +21,7 @@ public:
         }
     }
     // NOLINTNEXTLINE(readability-identifier-naming): named as std::vector's
-    [[gnu::always_inline]] void push_back(const Item& item) noexcept {
+    [[HASHPHASE_ALWAYS_INLINE]] void push_back(const Item& item) noexcept {
         HASHPHASE_ASSERT(size_ < room_.size(), "There is room for the item.");
         room_.data()[size_++] = item;
     }

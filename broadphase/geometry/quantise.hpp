@@ -5,6 +5,8 @@
 // quantise(); because it is monotone, rounding can put a point into a neighbouring cell but can
 // never separate two boxes that touch: a.min <= b.max implies cell(a.min) <= cell(b.max).
 
+#include <broadphase/core/compiler.hpp>
+
 #include <array>
 #include <cstdint>
 
@@ -27,15 +29,15 @@ inline constexpr Scalar kTinyCell = sizeof(Scalar) == sizeof(float) ? Scalar(0x1
 /// multiplication and the floor are each monotone after rounding. An origin near the population
 /// keeps the cells of a far-away world apart.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline std::int32_t quantise(Scalar x, Scalar origin,
-                                                               Scalar inverseCellSize) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::int32_t quantise(
+    Scalar x, Scalar origin, Scalar inverseCellSize) noexcept {
     constexpr auto limit = static_cast<Scalar>(kCellLimit);
     Scalar scaled = (x - origin) * inverseCellSize;
     scaled = scaled < limit ? scaled : limit;
     scaled = scaled > -limit ? scaled : -limit;
     // Both sides, for compilers make vector instructions of that. The other one's floor is 0 anyway.
     // Without a branch on the sign, which no processor could foresee.
-    const auto size = static_cast<Scalar>(__builtin_fabs(scaled));
+    const auto size = magnitude(scaled);
     scaled = size < kTinyCell<Scalar> ? Scalar(0) : scaled;
     const auto truncated = static_cast<std::int32_t>(scaled);
     return truncated - static_cast<std::int32_t>(static_cast<Scalar>(truncated) > scaled);

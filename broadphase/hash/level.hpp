@@ -59,30 +59,34 @@ struct Level {
     // The min corners by which entries are filed: buckets are sorted by them.
     const Scalar* filedLow[3] = {};
 
-    [[nodiscard, gnu::always_inline]] bool isDense() const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] bool isDense() const noexcept {
         return kind == LevelKind::dense;
     }
-    [[nodiscard, gnu::always_inline]] bool hasCells() const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] bool hasCells() const noexcept {
         return kind != LevelKind::list;
     }
-    [[nodiscard, gnu::always_inline]] std::uint32_t count() const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t count() const noexcept {
         return lastEntry - firstEntry;
     }
     /// Whether a dense one has no cells, as the population is too sparse for it.
-    [[nodiscard, gnu::always_inline]] bool isEmpty() const noexcept { return low[0] > high[0]; }
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] bool isEmpty() const noexcept {
+        return low[0] > high[0];
+    }
 
-    [[nodiscard, gnu::always_inline]] std::int32_t cell(Scalar x, std::size_t axis) const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::int32_t cell(Scalar x,
+                                                             std::size_t axis) const noexcept {
         // Not 0 * infinity, along a flat axis.
         return inverseCellSize[axis] == 0 ? 0 : quantise(x, origin[axis], inverseCellSize[axis]);
     }
 
     /// By how much the numbers of a row's cells exceed those of row 0, 0.
-    [[nodiscard, gnu::always_inline]] std::int64_t offset(Row row) const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::int64_t offset(Row row) const noexcept {
         return std::int64_t{row.y} * strideY + std::int64_t{row.z} * strideZ;
     }
     /// The bucket of a numbered cell, among the level's own.
     template <bool kIsDense>
-    [[nodiscard, gnu::always_inline]] std::uint32_t bucketOf(std::int64_t number) const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t bucketOf(
+        std::int64_t number) const noexcept {
         const std::int64_t shifted = base + number;
         if constexpr (kIsDense) {
             return static_cast<std::uint32_t>(shifted);
@@ -98,11 +102,12 @@ struct Level {
     }
     /// The bucket of a cell from low to high, among the level's own.
     template <bool kIsDense>
-    [[nodiscard, gnu::always_inline]] std::uint32_t bucketOf(std::int32_t x,
-                                                             Row row) const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t bucketOf(std::int32_t x,
+                                                                  Row row) const noexcept {
         return bucketOf<kIsDense>(x + offset(row));
     }
-    [[nodiscard, gnu::always_inline]] std::uint32_t bucket(std::int32_t x, Row row) const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t bucket(std::int32_t x,
+                                                                Row row) const noexcept {
         return isDense() ? bucketOf<true>(x, row) : bucketOf<false>(x, row);
     }
 };

@@ -35,11 +35,9 @@ struct SortedBucket {
 
 /// The first of them, or one before it.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline std::uint32_t firstNear(const SortedBucket<Scalar>& sorted,
-                                                                 const Scalar* keys,
-                                                                 std::uint32_t first,
-                                                                 std::uint32_t last,
-                                                                 Scalar low) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::uint32_t firstNear(
+    const SortedBucket<Scalar>& sorted, const Scalar* keys, std::uint32_t first, std::uint32_t last,
+    Scalar low) noexcept {
     // Rounded, the difference is still no more than the min corner of any box that reaches `low`: that
     // is a number, and rounding is monotone.
     const Scalar bound = low - sorted.reach;
@@ -56,10 +54,10 @@ template <class Scalar>
 
 /// One past the last of them, or one behind it; before firstNear() when there is none.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline std::uint32_t endOfNear(const Scalar* keys,
-                                                                 std::uint32_t first,
-                                                                 std::uint32_t last,
-                                                                 Scalar high) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::uint32_t endOfNear(const Scalar* keys,
+                                                                      std::uint32_t first,
+                                                                      std::uint32_t last,
+                                                                      Scalar high) noexcept {
     while (first < last) {
         const std::uint32_t middle = first + (last - first) / 2;
         if (high < keys[middle]) {

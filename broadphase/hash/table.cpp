@@ -7,8 +7,8 @@
 
 #include <broadphase/hash/crowded_buckets.inl>
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
-#include <broadphase/core/prefetch.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/kernels.hpp>
 

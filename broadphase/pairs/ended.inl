@@ -7,7 +7,7 @@
 #include <broadphase/pairs/settled.inl>
 #include <broadphase/pairs/watched.inl>
 
-#include <broadphase/core/prefetch.hpp>
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 
 namespace hashphase::detail {

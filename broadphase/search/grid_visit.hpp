@@ -3,7 +3,7 @@
 
 // Grid's query templates; included by grid.hpp.
 
-#include <broadphase/core/prefetch.hpp>
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/shared_cost.hpp>
 #include <broadphase/geometry/box_columns.hpp>
 #include <broadphase/grid.hpp>

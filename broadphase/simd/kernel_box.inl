@@ -270,8 +270,7 @@ bool scanAll(const Level<Scalar>& level, const Query& query, Run run, Row row, P
             std::uint32_t mask = box.template overlapMask<width>(level.columns, run.first) &
                                  laneMask(end - run.first, width);
             for (; mask != 0; mask &= mask - 1) {
-                const std::uint32_t hit =
-                    run.first + static_cast<std::uint32_t>(__builtin_ctz(mask));
+                const std::uint32_t hit = run.first + lowestBit(mask);
                 *found.next = {query.number, hit};
                 found.next += isInRow<kIsDense>(level, hit, row) && query.finds(hit) ? 1 : 0;
             }
@@ -320,8 +319,8 @@ bool sweepPart(const Level<Scalar>& level, const Query& query, const SortedBucke
 // these, those that begin before the box ends, and no farther before it than the longest of them
 // reaches, and the long ones.
 template <bool kIsDense, class Scalar, class Query>
-[[gnu::noinline]] bool sweep(const Level<Scalar>& level, const Query& query, Run run, Row row,
-                             PairSink& found, std::uint64_t& tested) {
+[[HASHPHASE_NO_INLINE]] bool sweep(const Level<Scalar>& level, const Query& query, Run run, Row row,
+                                   PairSink& found, std::uint64_t& tested) {
     const SortedBucket<Scalar>* const endOfSorted = level.sortedBuckets + level.sortedCount;
     while (run.first < run.last) {
         const std::uint32_t bucket = level.bucketOfEntry[run.first];

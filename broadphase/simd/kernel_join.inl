@@ -79,7 +79,7 @@ std::uint64_t joinEntry(const Neighbourhood<Scalar, kIsDense, kRows>& around, co
     std::uint64_t hits = first.hits;
     IndexPair* next = found.next;
     const auto take = [&] {
-        const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(hits | kNoHit));
+        const std::uint32_t bit = lowestBit(hits | kNoHit);
         const std::uint32_t k = bit / kWidth;
         const std::uint32_t hit = runs[k].first + bit % kWidth;
         *next = {entry, hit};
@@ -103,9 +103,9 @@ std::uint64_t joinEntry(const Neighbourhood<Scalar, kIsDense, kRows>& around, co
 
 // Flattened, because compilers leave calls in this loop otherwise.
 template <class Scalar, bool kIsDense, int kRows, class QueryOf>
-[[gnu::flatten]] void joinRows(const Level<Scalar>& level, const Row* steps, const QueryOf& queryOf,
-                               std::uint32_t firstEntry, std::uint32_t lastEntry, PairSink& found,
-                               KernelCost& cost) {
+[[HASHPHASE_FLATTEN]] void joinRows(const Level<Scalar>& level, const Row* steps,
+                                    const QueryOf& queryOf, std::uint32_t firstEntry,
+                                    std::uint32_t lastEntry, PairSink& found, KernelCost& cost) {
     const Neighbourhood<Scalar, kIsDense, kRows> around(level, steps);
     std::uint64_t boxesTested = 0;
     for (std::uint32_t entry = firstEntry; entry < lastEntry; ++entry) {

@@ -46,7 +46,7 @@ inline std::uint32_t wrapped(std::uint32_t cell, std::uint32_t extent) {
 
 template <class Number>
 void copyNumbers(Number* to, const Number* from) {
-    __builtin_memcpy(to, from, kCopied * sizeof(Number));
+    std::memcpy(to, from, kCopied * sizeof(Number));
 }
 
 /// At most: five rows an axis, and two runs a row.
@@ -127,8 +127,9 @@ void gatherTile(const RadiusView<Scalar>& view, const CellSegment& segment, std:
     }
     tile.count = total;
     tile.wordCount = (total + kWord - 1) / kWord;
+    constexpr Scalar kNaN = std::numeric_limits<Scalar>::quiet_NaN();
     for (std::uint32_t k = 0; k < kWord; ++k) {
-        to[0][total + k] = static_cast<Scalar>(__builtin_nan(""));  // within no distance
+        to[0][total + k] = kNaN;  // within no distance
     }
 }
 

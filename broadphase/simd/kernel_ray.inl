@@ -46,9 +46,9 @@ constexpr std::uint32_t kMostPending = 256;
 // The lane of `mask`, which has one, that is entered first; of several, that with the smallest
 // number.
 inline std::uint32_t nearestLane(const float* enter, std::uint32_t mask) {
-    auto nearest = static_cast<std::uint32_t>(__builtin_ctz(mask));
+    std::uint32_t nearest = lowestBit(mask);
     for (mask &= mask - 1; mask != 0; mask &= mask - 1) {
-        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(mask));
+        const std::uint32_t lane = lowestBit(mask);
         nearest = enter[lane] < enter[nearest] ? lane : nearest;
     }
     return nearest;
@@ -72,7 +72,7 @@ inline std::uint32_t pushLanes(const TreeNode8& block, const float* enter, std::
                                PendingBlock* pending, std::uint32_t count) {
     const std::uint32_t bottom = count;
     for (; mask != 0; mask &= mask - 1) {
-        const auto lane = static_cast<std::uint32_t>(__builtin_ctz(mask));
+        const std::uint32_t lane = lowestBit(mask);
         std::uint32_t i = count++;
         for (; i > bottom && pending[i - 1].enter < enter[lane]; --i) {
             pending[i] = pending[i - 1];

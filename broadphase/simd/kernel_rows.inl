@@ -97,7 +97,8 @@ BucketRange<kIsDense> bucketsOf(const Level<Scalar>& level, Row row, std::int32_
 // Whether the rows of a hashed level have more entries in their buckets, those of other rows and those
 // that several of them share included, than there are.
 template <class Scalar>
-[[gnu::noinline]] bool costsMoreThanFullScan(const Level<Scalar>& level, const CellBlock& block) {
+[[HASHPHASE_NO_INLINE]] bool costsMoreThanFullScan(const Level<Scalar>& level,
+                                                   const CellBlock& block) {
     std::uint64_t left = level.count();
     return !block.forRows([&](Row row) {
         const auto buckets = bucketsOf<false>(level, row, block.low[0], block.rowLength());

@@ -45,8 +45,8 @@ bool gatherPacks(const Level<Scalar>& level, const CellBlock& block, Packs& pack
 // Gathers what is filed around the boxes from first to last. Returns false when they are better
 // looked at one by one.
 template <bool kIsDense, class Scalar>
-[[gnu::flatten]] bool gatherAround(const Level<Scalar>& level, const Scalar* const* queries,
-                                   std::uint32_t first, std::uint32_t last, Packs& packs) {
+[[HASHPHASE_FLATTEN]] bool gatherAround(const Level<Scalar>& level, const Scalar* const* queries,
+                                        std::uint32_t first, std::uint32_t last, Packs& packs) {
     // The box around all. Whatever overlaps one of them, be it inverted, overlaps this one, when this
     // one is not inverted; a NaN is left out, as it overlaps nothing.
     Scalar around[6];
@@ -92,7 +92,7 @@ bool scanPacks(const Level<Scalar>& level, const Query<Scalar>& query, const Pac
             hits |= std::uint64_t{mask} << (kWidth * k);
         }
         for (; hits != 0; hits &= hits - 1) {
-            const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(hits));
+            const std::uint32_t bit = lowestBit(hits);
             const std::uint32_t k = begin + bit / kWidth;
             const std::uint32_t hit = packs.first[k] + bit % kWidth;
             *found.next = {query.number, hit};
@@ -103,9 +103,9 @@ bool scanPacks(const Level<Scalar>& level, const Query<Scalar>& query, const Pac
 }
 
 template <bool kIsDense, class Scalar>
-[[gnu::flatten]] bool scanAround(const Level<Scalar>& level, const Scalar* const* queries,
-                                 std::uint32_t first, std::uint32_t last, const Packs& packs,
-                                 PairSink& found, KernelCost& cost) {
+[[HASHPHASE_FLATTEN]] bool scanAround(const Level<Scalar>& level, const Scalar* const* queries,
+                                      std::uint32_t first, std::uint32_t last, const Packs& packs,
+                                      PairSink& found, KernelCost& cost) {
     cost.rowsVisited += packs.rowCount;
     bool goesOn = true;
     for (std::uint32_t number = first; number < last && packs.count > 0 && goesOn; ++number) {

@@ -5,6 +5,7 @@
 // several instruction sets, and an inline function of the standard library that such a file emits
 // could be the copy that the linker keeps for the whole program.
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/hash/level.hpp>
 #include <broadphase/proxy_groups.hpp>
 #include <broadphase/simd/ray_types.hpp>
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace hashphase::detail {
 
@@ -30,7 +32,7 @@ struct alignas(4 * sizeof(Scalar)) PaddedBox {
 
 /// True when any of the six coordinates is NaN.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline bool isNan(const PaddedBox<Scalar>& box) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool isNan(const PaddedBox<Scalar>& box) noexcept {
     bool result = false;
     for (int axis = 0; axis < 3; ++axis) {
         result |= (box.low[axis] != box.low[axis]) | (box.high[axis] != box.high[axis]);
@@ -59,7 +61,7 @@ struct PairSink {
 };
 
 /// Room for `count` more pairs; false ends the search.
-[[gnu::always_inline]] inline bool makeRoom(PairSink& sink, std::size_t count) {
+[[HASHPHASE_ALWAYS_INLINE]] inline bool makeRoom(PairSink& sink, std::size_t count) {
     return static_cast<std::size_t>(sink.end - sink.next) >= count || sink.grow(sink, count);
 }
 

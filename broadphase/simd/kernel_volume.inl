@@ -176,7 +176,7 @@ using PlaneSet = std::uint64_t;
 static_assert(kMostVolumePlanes <= 64);
 
 inline std::uint32_t firstPlane(PlaneSet planes) {
-    return static_cast<std::uint32_t>(__builtin_ctzll(planes));
+    return lowestBit(planes);
 }
 
 // Writes numbers[k] for every bit k; may write up to the width of a Pack. Returns where the next one
@@ -185,10 +185,10 @@ template <class Pack>
 std::uint32_t* writeNumbers(std::uint32_t mask, const std::uint32_t* numbers, std::uint32_t* next) {
     if constexpr (requires { Pack::compress(mask, numbers, next); }) {
         Pack::compress(mask, numbers, next);
-        return next + __builtin_popcount(mask);
+        return next + bitCount(mask);
     } else {
         for (; mask != 0; mask &= mask - 1) {
-            *next++ = numbers[__builtin_ctz(mask)];
+            *next++ = numbers[lowestBit(mask)];
         }
         return next;
     }

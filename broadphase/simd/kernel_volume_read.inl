@@ -15,12 +15,12 @@ public:
     bool test(Run run) { return scan<true>(run, crossing_, Row{}); }
 
     /// Takes a run without a test.
-    [[gnu::noinline]] bool take(Run run) {
+    [[HASHPHASE_NO_INLINE]] bool take(Run run) {
         while (run.first < run.last) {
             const auto room = static_cast<std::uint32_t>(found_.end - found_.next);
             const std::uint32_t count = lowest(run.last - run.first, room);
-            __builtin_memcpy(found_.next, view_.level.proxyIndices + run.first,
-                             count * sizeof(*found_.next));
+            std::memcpy(found_.next, view_.level.proxyIndices + run.first,
+                        count * sizeof(*found_.next));
             found_.next += count;
             run.first += count;
             if (count == room && !found_.flush(found_)) {
@@ -103,7 +103,7 @@ private:
         const std::uint32_t last = lowest(run.last, run.first + kMostFetched);
         for (std::uint32_t at = run.first; at < last;
              at += kLine / sizeof(*view_.level.proxyIndices)) {
-            __builtin_prefetch(view_.level.proxyIndices + at);
+            prefetch(view_.level.proxyIndices + at);
         }
     }
 
@@ -112,7 +112,7 @@ private:
         for (std::uint32_t at = run.first; at < last; at += kLine / sizeof(Scalar)) {
             for (PlaneSet left = planes; left != 0; left &= left - 1) {
                 for (const Scalar* corner : view_.planes[firstPlane(left)].corner) {
-                    __builtin_prefetch(corner + at);
+                    prefetch(corner + at);
                 }
             }
         }
@@ -127,7 +127,7 @@ private:
     }
 
     // Where cells share buckets, nothing is known of what is read.
-    [[gnu::noinline]] bool readHashed(const RowBatch<Scalar>& batch, int count) {
+    [[HASHPHASE_NO_INLINE]] bool readHashed(const RowBatch<Scalar>& batch, int count) {
         for (int k = 0; k < count; ++k) {
             if (batch.first[k] <= batch.last[k]) {
                 ++cost_.rowsVisited;
@@ -150,7 +150,7 @@ private:
 
     // Once in memory, for all that call it: the first search of a frame has to fetch the code, too.
     template <bool kIsDense>
-    [[gnu::noinline]] bool scan(Run run, PlaneSet planes, Row row) {
+    [[HASHPHASE_NO_INLINE]] bool scan(Run run, PlaneSet planes, Row row) {
         using Pack = WidePack<Scalar>;
         constexpr std::uint32_t width = Pack::kWidth;
         cost_.boxesTested += planes == 0 ? 0 : run.last - run.first;
@@ -168,8 +168,7 @@ private:
                 found_.next = writeNumbers<Pack>(mask, proxyIndices + first, found_.next);
             } else {
                 for (; mask != 0; mask &= mask - 1) {
-                    const std::uint32_t hit =
-                        first + static_cast<std::uint32_t>(__builtin_ctz(mask));
+                    const std::uint32_t hit = first + lowestBit(mask);
                     *found_.next = proxyIndices[hit];
                     found_.next += isInRow<false>(view_.level, hit, row) ? 1 : 0;
                 }
@@ -192,8 +191,8 @@ private:
     }
 
     template <class Pack>
-    [[nodiscard, gnu::noinline]] std::uint32_t exactBitsOf(const BoxPlane<Scalar>& plane,
-                                                           std::uint32_t first) const {
+    [[nodiscard, HASHPHASE_NO_INLINE]] std::uint32_t exactBitsOf(const BoxPlane<Scalar>& plane,
+                                                                 std::uint32_t first) const {
         auto sum = Pack::broadcast(plane.offset);
         auto size = Pack::broadcast(absolute(plane.offset));
         for (int axis = 0; axis < 3; ++axis) {

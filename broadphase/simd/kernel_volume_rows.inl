@@ -74,7 +74,7 @@ public:
     }
 
 private:
-    static constexpr auto kNowhere = static_cast<Scalar>(-__builtin_inf());
+    static constexpr auto kNowhere = -std::numeric_limits<Scalar>::infinity();
 
     /// Of each row, between which coordinates boxes may touch the volume, and between which they
     /// surely do.

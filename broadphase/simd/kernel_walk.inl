@@ -22,7 +22,7 @@ bool scanRows(const Level<Scalar>& level, const Query& query, const Lanes& box, 
     }
     cost.boxesTested += tested;
     for (; hits != 0; hits &= hits - 1) {
-        const auto bit = static_cast<std::uint32_t>(__builtin_ctzll(hits));
+        const std::uint32_t bit = lowestBit(hits);
         const std::uint32_t k = bit / kWidth;
         const std::uint32_t hit = runs[k].first + bit % kWidth;
         *found.next = {query.number, hit};
@@ -39,8 +39,8 @@ bool scanRows(const Level<Scalar>& level, const Query& query, const Lanes& box, 
 }
 
 template <bool kIsDense, class Scalar, class Query>
-[[gnu::flatten]] bool walkBlock(const Level<Scalar>& level, const Query& query,
-                                const CellBlock& block, PairSink& found, KernelCost& cost) {
+[[HASHPHASE_FLATTEN]] bool walkBlock(const Level<Scalar>& level, const Query& query,
+                                     const CellBlock& block, PairSink& found, KernelCost& cost) {
     cost.rowsVisited += block.rowCount();
     const auto box = query.template lanes<Pack<Scalar>>();
     Run runs[kWidth];

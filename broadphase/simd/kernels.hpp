@@ -12,6 +12,7 @@
 #include <broadphase/simd/kernel_types.hpp>
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <memory>
@@ -23,7 +24,12 @@
 
 namespace hashphase::detail {
 
-enum class InstructionSet { scalar, sse2, avx2, avx512 };
+enum class InstructionSet { scalar, sse2, avx2, avx512, neon, simd128 };
+
+/// All that there are, the scalar one first.
+inline constexpr std::array kInstructionSets{InstructionSet::scalar, InstructionSet::sse2,
+                                             InstructionSet::avx2,   InstructionSet::avx512,
+                                             InstructionSet::neon,   InstructionSet::simd128};
 
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT const char* nameOf(InstructionSet set) noexcept;
 

@@ -120,7 +120,7 @@ inline bool quantiseCorners(const Level<double>& level, const PaddedBox<double>&
 }
 
 inline std::uint32_t bitCount(std::uint64_t word) {
-    return static_cast<std::uint32_t>(__builtin_popcountll(word));
+    return static_cast<std::uint32_t>(_mm_popcnt_u64(word));
 }
 
 inline std::uint64_t equalBytes(const std::uint8_t* bytes, std::uint8_t value) {

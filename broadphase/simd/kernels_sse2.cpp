@@ -94,8 +94,9 @@ inline std::uint64_t equalBytes(const std::uint8_t* bytes, std::uint8_t value) {
     return mask;
 }
 
+#include <broadphase/simd/bit_count_scalar.inl>
 #include <broadphase/simd/corners_scalar.inl>
-#include <broadphase/simd/words_scalar.inl>
+#include <broadphase/simd/write_hits_scalar.inl>
 
 #include <broadphase/simd/kernels.inl>
 

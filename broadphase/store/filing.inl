@@ -5,8 +5,8 @@
 
 #include <broadphase/store/store.hpp>
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
-#include <broadphase/core/prefetch.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -85,13 +85,14 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     [[nodiscard]] std::uint32_t takeIndex();
     void reserve(std::size_t count);
     // Inline, as calls would cost what they do.
-    [[gnu::always_inline]] void move(std::uint32_t proxyIndex, const Box& box) {
+    [[HASHPHASE_ALWAYS_INLINE]] void move(std::uint32_t proxyIndex, const Box& box) {
         if (!moveIfInPlace(proxyIndex, box)) {
             moveAny(proxyIndex, box);
         }
     }
     /// Returns false, and has done nothing, where moveAny() has to do it.
-    [[nodiscard, gnu::always_inline]] bool moveIfInPlace(std::uint32_t proxyIndex, const Box& box) {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] bool moveIfInPlace(std::uint32_t proxyIndex,
+                                                              const Box& box) {
         Record& record = proxies.records[proxyIndex];
         if (isSameBits(record.box, box)) {
             return true;
@@ -106,15 +107,15 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     // By value, lest that of move() had to be in memory for it.
     void moveAny(std::uint32_t proxyIndex, Box box);
     /// Whether a move writes the record, two counts and the list of changes, and nothing else.
-    [[nodiscard, gnu::always_inline]] static bool movesInPlace(const Record& record,
-                                                               const Box& box) noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] static bool movesInPlace(const Record& record,
+                                                                    const Box& box) noexcept {
         return record.hasSlack
                    ? staysWithin(box, record.before)
                    : record.residency == Residency::mobile && !record.isNan && !hasNan(box);
     }
     /// Whether the box is not inverted, and within the one by which it is filed.
-    [[nodiscard, gnu::always_inline]] static bool staysWithin(const Box& box,
-                                                              const Box& filed) noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] static bool staysWithin(const Box& box,
+                                                                   const Box& filed) noexcept {
         for (Eigen::Index axis = 0; axis < 3; ++axis) {
             if (!(filed.min()[axis] <= box.min()[axis] && box.min()[axis] <= box.max()[axis] &&
                   box.max()[axis] <= filed.max()[axis])) {
@@ -125,9 +126,10 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     }
     /// Such a move. Counts, and calls list() where the proxy is to be listed.
     template <class ListChange>
-    [[gnu::always_inline]] void moveInPlace(Record& record, const Box& box, std::uint32_t& changed,
-                                            std::uint32_t& settledChanged,
-                                            const ListChange& list) noexcept {
+    [[HASHPHASE_ALWAYS_INLINE]] void moveInPlace(Record& record, const Box& box,
+                                                 std::uint32_t& changed,
+                                                 std::uint32_t& settledChanged,
+                                                 const ListChange& list) noexcept {
         changed += keepBefore(record) ? 1 : 0;
         settledChanged += record.hasSlack ? 1 : 0;
         if (!proxies.isWaiting(record)) {
@@ -154,7 +156,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     void noteLeft(std::uint32_t proxyIndex) noexcept;
     void countChange(Record& record) noexcept { cost.changed += keepBefore(record) ? 1 : 0; }
     /// Where the record has not changed since the last update: keeps what it was then, and returns true.
-    [[gnu::always_inline]] bool keepBefore(Record& record) noexcept {
+    [[HASHPHASE_ALWAYS_INLINE]] bool keepBefore(Record& record) noexcept {
         if (record.changedAt == proxies.updateNumber) {
             return false;
         }

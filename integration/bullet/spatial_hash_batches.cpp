@@ -2,8 +2,8 @@
 //
 // Many proxies at once, with the result of as many single calls.
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
-#include <broadphase/core/prefetch.hpp>
 #include <broadphase/move_batch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/lone_moves.inl>

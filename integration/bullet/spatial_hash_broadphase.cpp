@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/limits.hpp>
-#include <broadphase/core/prefetch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/body_motion.hpp>
 #include <integration/bullet/detail/lone_moves.inl>

@@ -14,9 +14,10 @@ namespace {
 /// Inlined, so that the position stays in registers: what is stored in parts and read at once as a
 /// whole waits for the memory.
 template <class Scalar>
-[[gnu::always_inline]] inline void turnBack(Vector3<Scalar>& position, Vector3<Scalar>& velocity,
-                                            const Vector3<Scalar>& low,
-                                            const Vector3<Scalar>& high) {
+[[HASHPHASE_ALWAYS_INLINE]] inline void turnBack(Vector3<Scalar>& position,
+                                                 Vector3<Scalar>& velocity,
+                                                 const Vector3<Scalar>& low,
+                                                 const Vector3<Scalar>& high) {
     for (int axis = 0; axis < 3; ++axis) {
         if (position[axis] < low[axis]) {
             position[axis] = low[axis];

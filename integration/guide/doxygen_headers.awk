@@ -5,7 +5,7 @@
 # live by their columns. Instantiations and specialisations are left out, the namespace that tells precisions
 # apart, which nobody writes, and what is for compilers alone.
 
-{ sub(/::inline HASHPHASE_BULLET_NAMESPACE/, ""); sub(/ HASHPHASE_LIFETIME_BOUND\)/, ")") }
+{ sub(/::inline HASHPHASE_BULLET_NAMESPACE/, ""); sub(/ \[\[HASHPHASE_LIFETIME_BOUND\]\]\)/, ")") }
 
 /^extern template/ || /^template <>$/ { isInstantiation = 1 }
 isInstantiation {

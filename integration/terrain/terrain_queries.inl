@@ -5,8 +5,8 @@
 
 #include <integration/terrain/terrain.hpp>
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/fixed_list.hpp>
-#include <broadphase/core/prefetch.hpp>
 #include <broadphase/core/shared_cost.hpp>
 
 #include <algorithm>
@@ -58,8 +58,8 @@ public:
         triangle_ = kNone;
     }
 
-    [[gnu::noinline]] void lookAt(const Terrain& terrain, std::uint32_t number,
-                                  const detail::Point2& point, Scalar from) noexcept {
+    [[HASHPHASE_NO_INLINE]] void lookAt(const Terrain& terrain, std::uint32_t number,
+                                        const detail::Point2& point, Scalar from) noexcept {
         const detail::GroundTriangle<Scalar>& triangle = terrain.triangles_[number];
         if (!triangle.hasHeights) {
             return;
@@ -227,8 +227,8 @@ public:
     static constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
 
     // A counting sort.
-    [[gnu::noinline]] TileOrder(const Terrain& terrain, std::span<const Point> points,
-                                ParallelFor parallelFor) {
+    [[HASHPHASE_NO_INLINE]] TileOrder(const Terrain& terrain, std::span<const Point> points,
+                                      ParallelFor parallelFor) {
         constexpr std::size_t grain = 8192;
         std::uint16_t tiles[kMost];
         parallelFor(points.size(), grain, [&](std::size_t begin, std::size_t end) {
@@ -286,10 +286,9 @@ QueryCost Terrain<Scalar>::searchInOrder(std::size_t count, const NumberOf& numb
 
 template <class Scalar>
 template <class Search, class MakeSearch>
-[[gnu::noinline]] QueryCost Terrain<Scalar>::searchByTiles(std::span<const Point> points,
-                                                           std::span<Found> found,
-                                                           ParallelFor parallelFor,
-                                                           const MakeSearch& makeSearch) const {
+[[HASHPHASE_NO_INLINE]] QueryCost Terrain<Scalar>::searchByTiles(
+    std::span<const Point> points, std::span<Found> found, ParallelFor parallelFor,
+    const MakeSearch& makeSearch) const {
     QueryCost cost;
     for (std::size_t first = 0; first < points.size(); first += TileOrder::kMost) {
         const std::size_t count = std::min(points.size() - first, TileOrder::kMost);

@@ -228,6 +228,9 @@ TYPED_TEST(KernelsTest, TellApartThePairsThatBruteForceTellsApart) {
 
 TEST(InstructionSets, ScalarIsAlwaysAvailableAndTheBestOneIsInUse) {
     EXPECT_TRUE(isAvailable(InstructionSet::scalar));
+    for (const InstructionSet set : detail::kInstructionSets) {
+        EXPECT_TRUE(!isAvailable(set) || set <= instructionSet()) << nameOf(set);
+    }
     EXPECT_TRUE(isAvailable(instructionSet()));
     EXPECT_STREQ(nameOf(InstructionSet::avx512), "AVX-512");
 }

@@ -61,8 +61,7 @@ TEST(GoldenResults, AreThoseOnRecord) {
 TEST(GoldenResults, AreTheSameWithEveryInstructionSet) {
     using detail::InstructionSet;
     const InstructionSet best = detail::instructionSet();
-    for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse2,
-                                     InstructionSet::avx2, InstructionSet::avx512}) {
+    for (const InstructionSet set : detail::kInstructionSets) {
         if (detail::isAvailable(set)) {
             detail::useInstructionSet(set);
             EXPECT_EQ(differences(goldenLines(), plainLines()), "") << detail::nameOf(set);

@@ -134,8 +134,7 @@ template <class Visit>
 void forEachInstructionSet(const Visit& visit) {
     using detail::InstructionSet;
     const InstructionSet before = detail::instructionSet();
-    for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse2,
-                                     InstructionSet::avx2, InstructionSet::avx512}) {
+    for (const InstructionSet set : detail::kInstructionSets) {
         if (detail::isAvailable(set)) {
             detail::useInstructionSet(set);
             SCOPED_TRACE(detail::nameOf(set));

@@ -2,7 +2,7 @@
 
 // main() for tests that are run once for each instruction set:
 //
-//     broadphase-tests [--instruction-set=scalar|SSE2|AVX2|AVX-512] [GoogleTest options]
+//     broadphase-tests [--instruction-set=scalar|SSE2|AVX2|AVX-512|NEON|SIMD128] [GoogleTest options]
 //
 // Tests are skipped where the processor or the build lacks the instructions.
 
@@ -23,8 +23,7 @@ public:
 };
 
 bool choose(std::string_view name) {
-    for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse2,
-                                     InstructionSet::avx2, InstructionSet::avx512}) {
+    for (const InstructionSet set : hashphase::detail::kInstructionSets) {
         if (name != hashphase::detail::nameOf(set)) {
             continue;
         }

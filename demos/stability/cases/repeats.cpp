@@ -147,8 +147,7 @@ constexpr auto allInstructions = [](auto& run) {
     const std::size_t count = run.template quickOrFull<std::size_t>(1500, 10'000);
     const InstructionSet before = detail::instructionSet();
     std::uint64_t expected = 0;
-    for (const InstructionSet set : {InstructionSet::scalar, InstructionSet::sse2,
-                                     InstructionSet::avx2, InstructionSet::avx512}) {
+    for (const InstructionSet set : detail::kInstructionSets) {
         if (!detail::isAvailable(set)) {
             continue;
         }

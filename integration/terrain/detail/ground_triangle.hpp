@@ -65,8 +65,8 @@ struct Weights {
 };
 
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline Weights weightsAt(const GroundTriangle<Scalar>& triangle,
-                                                           const Point2& point) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline Weights weightsAt(
+    const GroundTriangle<Scalar>& triangle, const Point2& point) noexcept {
     const Point2 a = triangle.above(0);
     const Point2 b = triangle.above(1);
     const Point2 c = triangle.above(2);
@@ -82,8 +82,8 @@ template <class Scalar>
 
 /// Height of the triangle's face at a point with these weights; means nothing unless they are inside.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline double heightAt(const GroundTriangle<Scalar>& triangle,
-                                                         const Weights& weights) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline double heightAt(
+    const GroundTriangle<Scalar>& triangle, const Weights& weights) noexcept {
     const double a = triangle.height(0);
     const double b = triangle.height(1);
     const double c = triangle.height(2);
@@ -159,8 +159,8 @@ struct Edge {
 
 /// Whether a sphere whose centre is at `height` is clear of the line through the edge, and above it, by
 /// more than rounding: then the edge does not carry it as high. Without a division or a root.
-[[nodiscard, gnu::always_inline]] inline bool isClearOf(const Edge& edge, double radius,
-                                                        double height) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool isClearOf(const Edge& edge, double radius,
+                                                             double height) noexcept {
     constexpr double slack = 1e-9;
     const double lengthSquared = edge.lengthSquared();
     // Above the line, the sphere is cut to a circle: its radius, squared, times the length, squared.
@@ -232,7 +232,7 @@ template <class Scalar>
 
 /// Where the peak is. All weights are negative where the triangle has no normal.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline Weights weightsAtPeak(
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline Weights weightsAtPeak(
     const GroundTriangle<Scalar>& triangle, const Point2& center, double radius) noexcept {
     if (!triangle.hasNormal) [[unlikely]] {
         return {-1, -1, -1};
@@ -243,18 +243,17 @@ template <class Scalar>
 
 /// The height when the peak is inside.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline Rest restOnFace(const GroundTriangle<Scalar>& triangle,
-                                                         const Weights& peak,
-                                                         double radius) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline Rest restOnFace(
+    const GroundTriangle<Scalar>& triangle, const Weights& peak, double radius) noexcept {
     const double touch = heightAt(triangle, peak);
     return {touch + radius * triangle.normal.y(), touch};
 }
 
 /// The height when it is not. Means nothing where that is below `least`.
 template <class Scalar>
-[[nodiscard, gnu::always_inline]] inline Rest restOnEdges(const GroundTriangle<Scalar>& triangle,
-                                                          const Weights& peak, const Point2& center,
-                                                          double radius, double least) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline Rest restOnEdges(
+    const GroundTriangle<Scalar>& triangle, const Weights& peak, const Point2& center,
+    double radius, double least) noexcept {
     Rest best;
     const auto look = [&](double weight, std::size_t i, std::size_t j) {
         const Edge edge(triangle, i, j, center);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 
-// Words of hits without instructions for them. See kernels.inl.
+// Counts bits without an instruction for it. See kernels.inl.
 
 // After H. S. Warren, "Hacker's Delight", 5-1.
 inline std::uint32_t bitCount(std::uint64_t word) {
@@ -8,12 +8,4 @@ inline std::uint32_t bitCount(std::uint64_t word) {
     word = (word & 0x3333333333333333U) + ((word >> 2) & 0x3333333333333333U);
     word = (word + (word >> 4)) & 0x0f0f0f0f0f0f0f0fU;
     return static_cast<std::uint32_t>((word * 0x0101010101010101U) >> 56);
-}
-
-inline std::uint32_t* writeHits(std::uint64_t word, const std::uint32_t* numbers,
-                                std::uint32_t* next) {
-    for (; word != 0; word &= word - 1) {
-        *next++ = numbers[__builtin_ctzll(word)];
-    }
-    return next;
 }

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What each compiler calls the same thing. The libraries know no compiler and no processor but by this
+// header, by <broadphase/export.hpp>, and where instructions are chosen (<broadphase/simd/>).
+//
+// Attributes stand in brackets, alone or among others, before the declaration:
+//
+//     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline int f();
+//
+// HASHPHASE_ALWAYS_INLINE     inlined wherever it is called, also where nothing else is optimised
+// HASHPHASE_NO_INLINE         never inlined: what is seldom needed does not lengthen what often runs
+// HASHPHASE_FLATTEN           all that the function calls is inlined in it, and what that calls; Clang
+//                             before 22 inlines what it calls itself, and gets -inline-threshold instead
+// HASHPHASE_LIFETIME_BOUND    of a parameter to which the new object keeps a reference: a compiler that
+//                             knows it warns where a temporary would die before the object
+// HASHPHASE_HAS_SSE2          1 where every processor that this code is compiled for has these
+// HASHPHASE_HAS_NEON          instructions, and the compiler their functions
+// HASHPHASE_HAS_SIMD128
+
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+
+#if defined(__clang__) || defined(__GNUC__)
+#define HASHPHASE_ALWAYS_INLINE gnu::always_inline
+#define HASHPHASE_NO_INLINE gnu::noinline
+#define HASHPHASE_FLATTEN gnu::flatten
+#elif defined(_MSC_VER)
+#define HASHPHASE_ALWAYS_INLINE msvc::forceinline
+#define HASHPHASE_NO_INLINE msvc::noinline
+#define HASHPHASE_FLATTEN msvc::flatten
+#include <intrin.h>
+#else
+#define HASHPHASE_ALWAYS_INLINE
+#define HASHPHASE_NO_INLINE
+#define HASHPHASE_FLATTEN
+#endif
+
+#if __has_cpp_attribute(clang::lifetimebound)
+#define HASHPHASE_LIFETIME_BOUND clang::lifetimebound
+#elif __has_cpp_attribute(msvc::lifetimebound)
+#define HASHPHASE_LIFETIME_BOUND msvc::lifetimebound
+#else
+#define HASHPHASE_LIFETIME_BOUND
+#endif
+
+#if defined(__SSE2__) || defined(_M_X64) || (defined(_M_IX86_FP) && _M_IX86_FP >= 2)
+#define HASHPHASE_HAS_SSE2 1
+#else
+#define HASHPHASE_HAS_SSE2 0
+#endif
+#if defined(__aarch64__) || defined(_M_ARM64)
+#define HASHPHASE_HAS_NEON 1
+#else
+#define HASHPHASE_HAS_NEON 0
+#endif
+#if defined(__wasm_simd128__)
+#define HASHPHASE_HAS_SIMD128 1
+#else
+#define HASHPHASE_HAS_SIMD128 0
+#endif
+
+namespace hashphase::detail {
+
+/// Begins to fetch what lies there into the processor's cache. Any address will do, also null.
+[[HASHPHASE_ALWAYS_INLINE]] inline void prefetch([[maybe_unused]] const void* address) noexcept {
+#if defined(__clang__) || defined(__GNUC__)
+    __builtin_prefetch(address);
+#elif defined(_M_X64) || defined(_M_IX86)
+    _mm_prefetch(static_cast<const char*>(address), 1);  // _MM_HINT_T0
+#elif defined(_M_ARM64)
+    __prefetch(address);
+#endif
+}
+
+/// The number of the lowest bit that is set in a word that is not 0.
+template <std::unsigned_integral Word>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::uint32_t lowestBit(Word word) noexcept {
+#if defined(__clang__) || defined(__GNUC__)
+    // Also what is not optimised is not a function that other code could be given in its place.
+    return static_cast<std::uint32_t>(sizeof(Word) <= 4 ? __builtin_ctz(static_cast<unsigned>(word))
+                                                        : __builtin_ctzll(word));
+#else
+    return static_cast<std::uint32_t>(std::countr_zero(word));
+#endif
+}
+
+/// |x|, of which no branch is made. Of NaN, NaN.
+template <std::floating_point Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline Scalar magnitude(Scalar x) noexcept {
+#if defined(__clang__) || defined(__GNUC__)
+    return static_cast<Scalar>(__builtin_fabs(static_cast<double>(x)));
+#else
+    return std::fabs(x);
+#endif
+}
+
+}  // namespace hashphase::detail

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Zlib
+
+// Which instructions the kernels use: the best of those that they were compiled for, as CMake tells
+// (broadphase/CMakeLists.txt), and that this processor has.
+
+#include <broadphase/diagnostics.hpp>
+#include <broadphase/simd/kernels.hpp>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+#if HASHPHASE_HAS_AVX_KERNELS && defined(_MSC_VER)
+#include <immintrin.h>
+#include <intrin.h>
+#endif
+
+namespace hashphase::detail {
+
+extern const Kernels<float> kScalarKernelsFloat;
+extern const Kernels<double> kScalarKernelsDouble;
+extern const Kernels<float> kSse2KernelsFloat;
+extern const Kernels<double> kSse2KernelsDouble;
+extern const Kernels<float> kAvx2KernelsFloat;
+extern const Kernels<double> kAvx2KernelsDouble;
+extern const Kernels<float> kAvx512KernelsFloat;
+extern const Kernels<double> kAvx512KernelsDouble;
+extern const Kernels<float> kNeonKernelsFloat;
+extern const Kernels<double> kNeonKernelsDouble;
+extern const Kernels<float> kSimd128KernelsFloat;
+extern const Kernels<double> kSimd128KernelsDouble;
+
+namespace {
+
+bool isEverywhere() noexcept {
+    return true;
+}
+
+#if HASHPHASE_HAS_AVX_KERNELS && defined(_MSC_VER)
+
+// Of CPUID leaf 7 EBX: AVX2, and AVX-512 F, DQ, BW, VL. Of XCR0: what the system saves of registers.
+constexpr unsigned kAvx2 = 1U << 5;
+constexpr unsigned kAvx512 = 1U << 16 | 1U << 17 | 1U << 30 | 1U << 31;
+constexpr unsigned kSavesAvx = 0x06;
+constexpr unsigned kSavesAvx512 = 0xe6;
+
+bool hasInstructions(unsigned wanted, unsigned saved) noexcept {
+    constexpr unsigned kSavesExtended = 1U << 27;  // of leaf 1 ECX
+    std::array<int, 4> leaf{};
+    __cpuid(leaf.data(), 0);
+    if (leaf[0] < 7) {
+        return false;
+    }
+    __cpuid(leaf.data(), 1);
+    if ((static_cast<unsigned>(leaf[2]) & kSavesExtended) == 0 || (_xgetbv(0) & saved) != saved) {
+        return false;
+    }
+    __cpuidex(leaf.data(), 7, 0);
+    return (static_cast<unsigned>(leaf[1]) & wanted) == wanted;
+}
+
+bool hasAvx2() noexcept {
+    return hasInstructions(kAvx2, kSavesAvx);
+}
+
+bool hasAvx512() noexcept {
+    return hasInstructions(kAvx512, kSavesAvx512);
+}
+
+#elif HASHPHASE_HAS_AVX_KERNELS
+
+bool hasAvx2() noexcept {
+    return __builtin_cpu_supports("avx2") != 0;
+}
+
+bool hasAvx512() noexcept {
+    return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+           __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0;
+}
+
+#endif
+
+struct Implementation {
+    InstructionSet set;
+    bool (*isHere)() noexcept;
+    const Kernels<float>* ofFloat;
+    const Kernels<double>* ofDouble;
+};
+
+// The best one last.
+constexpr Implementation kImplementations[] = {
+    {InstructionSet::scalar, &isEverywhere, &kScalarKernelsFloat, &kScalarKernelsDouble},
+#if HASHPHASE_HAS_SSE2_KERNELS
+    {InstructionSet::sse2, &isEverywhere, &kSse2KernelsFloat, &kSse2KernelsDouble},
+#endif
+#if HASHPHASE_HAS_AVX_KERNELS
+    {InstructionSet::avx2, &hasAvx2, &kAvx2KernelsFloat, &kAvx2KernelsDouble},
+    {InstructionSet::avx512, &hasAvx512, &kAvx512KernelsFloat, &kAvx512KernelsDouble},
+#endif
+#if HASHPHASE_HAS_NEON_KERNELS
+    {InstructionSet::neon, &isEverywhere, &kNeonKernelsFloat, &kNeonKernelsDouble},
+#endif
+#if HASHPHASE_HAS_SIMD128_KERNELS
+    {InstructionSet::simd128, &isEverywhere, &kSimd128KernelsFloat, &kSimd128KernelsDouble},
+#endif
+};
+
+/// Null where these kernels were not compiled, or not for this processor.
+const Implementation* implementationOf(InstructionSet set) noexcept {
+    const auto* const found = std::ranges::find(kImplementations, set, &Implementation::set);
+    return found != std::end(kImplementations) && found->isHere() ? found : nullptr;
+}
+
+const Implementation* bestImplementation() noexcept {
+    const Implementation* best = nullptr;
+    for (const Implementation& implementation : kImplementations) {
+        best = implementation.isHere() ? &implementation : best;
+    }
+    return best;
+}
+
+std::atomic<const Implementation*>& chosen() noexcept {
+    static std::atomic<const Implementation*> implementation{bestImplementation()};
+    return implementation;
+}
+
+const Implementation& implementation() noexcept {
+    return *chosen().load(std::memory_order_relaxed);
+}
+
+}  // namespace
+
+const char* nameOf(InstructionSet set) noexcept {
+    static constexpr const char* kNames[] = {"scalar",  "SSE2", "AVX2",
+                                             "AVX-512", "NEON", "SIMD128"};
+    static_assert(std::size(kNames) == kInstructionSets.size());
+    return kNames[static_cast<std::size_t>(set)];
+}
+
+bool isAvailable(InstructionSet set) noexcept {
+    return implementationOf(set) != nullptr;
+}
+
+InstructionSet instructionSet() noexcept {
+    return implementation().set;
+}
+
+void useInstructionSet(InstructionSet set) noexcept {
+    const Implementation* const wanted = implementationOf(set);
+    HASHPHASE_ASSERT(wanted != nullptr, "Only an instruction set that is available can be used.");
+    chosen().store(wanted, std::memory_order_relaxed);
+}
+
+template <>
+const Kernels<float>& kernels<float>() noexcept {
+    return *implementation().ofFloat;
+}
+
+template <>
+const Kernels<double>& kernels<double>() noexcept {
+    return *implementation().ofDouble;
+}
+
+}  // namespace hashphase::detail
