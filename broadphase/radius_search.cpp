@@ -3,6 +3,7 @@
 
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/on_failure.hpp>
 #include <broadphase/core/query_scope.hpp>
 #include <broadphase/core/shared_cost.hpp>
 #include <broadphase/geometry/unit_scale.hpp>
@@ -257,18 +258,16 @@ void RadiusSearch<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFi
     if (peaks_.isPast(std::max(grid.store().listedCount(), placeCount_), staged_.capacity())) {
         releaseMemory();
     }
-    try {
-        placeCount_ = grid.size() == 0 ? 0 : grid.store().listFew(few_);
-        chooseCells(grid, radius, filter);
-        stage(grid, filter, parallelFor);
-        sort(parallelFor);
-        prepare(radius);
-    } catch (...) {
+    const detail::OnFailure takeNone([&] {
         ids_.clear();
         agentCount_ = 0;
         leftOut_ = 0;
-        throw;
-    }
+    });
+    placeCount_ = grid.size() == 0 ? 0 : grid.store().listFew(few_);
+    chooseCells(grid, radius, filter);
+    stage(grid, filter, parallelFor);
+    sort(parallelFor);
+    prepare(radius);
 }
 
 // --- Questions -----------------------------------------------------------------------------------

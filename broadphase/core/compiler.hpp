@@ -17,6 +17,7 @@
 // HASHPHASE_HAS_SSE2          1 where every processor that this code is compiled for has these
 // HASHPHASE_HAS_NEON          instructions, and the compiler their functions
 // HASHPHASE_HAS_SIMD128
+// HASHPHASE_HAS_EXCEPTIONS    1 where this code is compiled with exceptions (without -fno-exceptions)
 
 #include <bit>
 #include <cmath>
@@ -60,6 +61,12 @@
 #define HASHPHASE_HAS_SIMD128 1
 #else
 #define HASHPHASE_HAS_SIMD128 0
+#endif
+
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+#define HASHPHASE_HAS_EXCEPTIONS 1
+#else
+#define HASHPHASE_HAS_EXCEPTIONS 0
 #endif
 
 namespace hashphase::detail {

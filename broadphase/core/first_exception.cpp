@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/core/first_exception.hpp>
 
+#include <broadphase/core/caught.hpp>
+
+#include <utility>
+
 namespace hashphase::detail {
 
 void FirstException::run(LoopBody body, std::size_t begin, std::size_t end) noexcept {
-    try {
-        body(begin, end);
-    } catch (...) {
-        if (!isKept_.exchange(true)) {
-            exception_ = std::current_exception();
-        }
+    std::exception_ptr thrown = exceptionOf([&] { body(begin, end); });
+    if (thrown != nullptr && !isKept_.exchange(true)) {
+        exception_ = std::move(thrown);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <broadphase/hash/table.hpp>
 
+#include <broadphase/core/on_failure.hpp>
 #include <broadphase/hash/crowded_buckets.inl>
 
 #include <broadphase/core/compiler.hpp>
@@ -143,20 +144,16 @@ void Table<Scalar>::build(std::span<const std::uint32_t> boxIndices,
         clear();
         return;
     }
-    try {
-        if (layout_ == nullptr) {
-            layout_ = std::make_unique<LevelLayout<Scalar>>();
-        }
-        if (bucketSort_ == nullptr) {
-            bucketSort_ = std::make_unique<BucketSort>();
-        }
-        unsettle();
-        findBuckets(boxes, fixed, parallelFor);
-        sortEntries(boxIndices, boxes, groups, parallelFor);
-    } catch (...) {
-        clear();
-        throw;
+    const OnFailure clearAll([&] { clear(); });
+    if (layout_ == nullptr) {
+        layout_ = std::make_unique<LevelLayout<Scalar>>();
     }
+    if (bucketSort_ == nullptr) {
+        bucketSort_ = std::make_unique<BucketSort>();
+    }
+    unsettle();
+    findBuckets(boxes, fixed, parallelFor);
+    sortEntries(boxIndices, boxes, groups, parallelFor);
 }
 
 // In the cells of the last time, unless too many boxes have left them.
@@ -235,19 +232,15 @@ void Table<Scalar>::settle() {
     if (size() == 0) {
         return;
     }
-    try {
-        if (settled_ == nullptr) {
-            settled_ = std::make_unique<Settled>();
-        }
-        for (auto& column : settled_->before) {
-            column.resize(bounds_[0].size());
-        }
-        for (std::size_t axis = 0; axis < 3 && asksForFiledLow(); ++axis) {
-            settled_->filedLow[axis] = bounds_[axis];
-        }
-    } catch (...) {
-        clear();
-        throw;
+    const OnFailure clearAll([&] { clear(); });
+    if (settled_ == nullptr) {
+        settled_ = std::make_unique<Settled>();
+    }
+    for (auto& column : settled_->before) {
+        column.resize(bounds_[0].size());
+    }
+    for (std::size_t axis = 0; axis < 3 && asksForFiledLow(); ++axis) {
+        settled_->filedLow[axis] = bounds_[axis];
     }
     linkLevels();
 }

@@ -5,7 +5,7 @@
 
 #include <broadphase/pairs/pair_state.hpp>
 
-#include <new>
+#include <broadphase/core/caught.hpp>
 
 namespace hashphase::detail {
 
@@ -36,7 +36,8 @@ void releaseUnusedMemory(PairState<Scalar>& pairs) noexcept {
     if (!known.arePairs()) {
         known.pile.reset();
     }
-    try {
+    // Where there is no memory to move it to, it is kept as it is.
+    static_cast<void>(hasRoomFor([&] {
         pairs.watched.amongMobile.shrink();
         pairs.watched.toResting.shrink();
         for (FlatSet* keys : {&known.refused, &known.refusedAtRest, &known.kept}) {
@@ -48,8 +49,7 @@ void releaseUnusedMemory(PairState<Scalar>& pairs) noexcept {
             known.pile->sampled = {};
             known.pile->pairs.shrink();
         }
-    } catch (const std::bad_alloc&) {  // what is left is kept as it is
-    }
+    }));
 }
 
 template <class Scalar>

@@ -7,13 +7,13 @@
 // when the two are apart; and of all that what has changed overlaps, the filter is asked about what is no
 // pair, in parts.
 
+#include <broadphase/core/caught.hpp>
 #include <broadphase/pairs/candidates.inl>
 #include <broadphase/pairs/filter.inl>
 #include <broadphase/pairs/watched.inl>
 
 #include <algorithm>
 #include <memory>
-#include <new>
 #include <utility>
 
 namespace hashphase::detail {
@@ -212,7 +212,7 @@ template <class Scalar>
 void chooseSide(PairState<Scalar>& pairs, bool isUpdated) noexcept {
     constexpr std::uint32_t kSeldom = 256;
     KnownPairs& known = pairs.known;
-    try {
+    const bool isChosen = hasRoomFor([&] {
         if (!known.arePairs()) {
             if (known.refusedCount() + known.immediate.size() > mostRefused(pairs) &&
                 !pairs.store.mustRebuildPairs) {
@@ -224,10 +224,9 @@ void chooseSide(PairState<Scalar>& pairs, bool isUpdated) noexcept {
             known.pile->updatesUntilLook = known.pile->lookInterval;
             rememberRefusedIfFew(pairs);
         }
-    } catch (const std::bad_alloc&) {  // what is remembered so far will do
-        if (known.arePairs()) {
-            forgetWatched(pairs);
-        }
+    });
+    if (!isChosen && known.arePairs()) {  // what is remembered so far will do
+        forgetWatched(pairs);
     }
 }
 

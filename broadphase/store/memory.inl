@@ -6,11 +6,11 @@
 
 #include <broadphase/store/store.hpp>
 
+#include <broadphase/core/caught.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
 
 #include <algorithm>
 #include <iterator>
-#include <new>
 #include <utility>
 
 namespace hashphase::detail {
@@ -22,13 +22,12 @@ void shrink(Array& array, std::size_t count) noexcept {
     if (array.capacity() <= std::max(count, array.size())) {
         return;
     }
-    try {
+    static_cast<void>(hasRoomFor([&] {
         Array fresh;
         fresh.reserve(std::max(count, array.size()));
         std::copy(array.begin(), array.end(), std::back_inserter(fresh));
         std::swap(array, fresh);
-    } catch (const std::bad_alloc&) {
-    }
+    }));
 }
 
 }  // namespace
@@ -88,18 +87,15 @@ void Store<Scalar>::releaseMemory() noexcept {
         tables.sweeping.reset();
     }
     wakeSettled();
-    if (tables.restingErased > 0) {  // and is still listed in the table
-        try {
-            listResting();
-            fileResting(serialFor);
-        } catch (const std::bad_alloc&) {
-            wakeAll();
-        }
+    const auto fileRestingAgain = [&] {
+        listResting();
+        fileResting(serialFor);
+    };
+    // What was erased is still listed in the table.
+    if (tables.restingErased > 0 && !hasRoomFor(fileRestingAgain)) {
+        wakeAll();
     }
-    try {
-        proxies.dropLastRecords();
-    } catch (const std::bad_alloc&) {  // they are kept
-    }
+    static_cast<void>(hasRoomFor([&] { proxies.dropLastRecords(); }));  // or they are kept
     shrink(proxies.records, proxies.reservedCount);
     shrink(proxies.groups, proxies.groups.empty() ? 0 : 2 * proxies.records.capacity());
     shrink(proxies.mobile, std::max(listedCount(), proxies.reservedCount));

@@ -6,10 +6,9 @@
 
 #include <broadphase/store/store.hpp>
 
+#include <broadphase/core/caught.hpp>
 #include <broadphase/geometry/origin_shift.hpp>
 #include <broadphase/store/motions.hpp>
-
-#include <new>
 
 namespace hashphase::detail {
 
@@ -87,7 +86,7 @@ void Store<Scalar>::shiftTables(const Point& shift) {
     if (!isMobileFiled) {
         tables.mustRefileMobile.store(true, std::memory_order_release);
     }
-    try {
+    const auto fileAgain = [&] {
         if (!isRestFiled) {
             listResting();
             fileResting(serialFor);
@@ -95,7 +94,8 @@ void Store<Scalar>::shiftTables(const Point& shift) {
         if (!isMobileFiled && cost.changed == 0) {
             mendTables();
         }
-    } catch (const std::bad_alloc&) {
+    };
+    if (!hasRoomFor(fileAgain)) {
         wakeAll();
     }
 }

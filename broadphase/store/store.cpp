@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/store/store.hpp>
 
+#include <broadphase/core/raise.hpp>
 #include <broadphase/store/filing.inl>
 #include <broadphase/store/memory.inl>
 #include <broadphase/store/reading.inl>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <stdexcept>
 #include <utility>
 
 namespace hashphase::detail {
@@ -22,7 +22,7 @@ namespace {
 const GridConfig& checked(const GridConfig& config) {
     const std::string error = configError(config);
     if (!error.empty()) {
-        throw std::invalid_argument(error);
+        raiseInvalidArgument(error);
     }
     return config;
 }

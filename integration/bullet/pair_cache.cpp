@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/pair_cache.hpp>
 
+#include <broadphase/core/caught.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/limits.hpp>
 #include <integration/bullet/detail/cache_watch.hpp>
@@ -9,7 +10,6 @@
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include <algorithm>
-#include <new>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -353,12 +353,12 @@ void PairCache::releaseUnusedMemory() noexcept {
     retired_.shrink_to_fit();
     detail::freeArrays(links_, places_, scratch_);
     parts_.reset();
-    try {
+    // Where there is no memory to move it to, it is kept as it is.
+    static_cast<void>(detail::hasRoomFor([&] {
         ranks_ = {};
         firstEdge_.shrink();
         ids_.shrink();
-    } catch (const std::bad_alloc&) {  // it is kept as it is
-    }
+    }));
 }
 
 std::string PairCache::validate() const {

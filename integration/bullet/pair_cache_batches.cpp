@@ -7,6 +7,7 @@
 #include <integration/bullet/pair_cache.hpp>
 
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/on_failure.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -71,22 +72,18 @@ void PairCache::exchange(std::span<const BulletProxyPair> died,
         }
         parts_->reserve(std::max(died.size(), born.size()));
     }
-    try {
-        if (areMany) {
-            vacateInParts(died, dispatcher, *onThreads);
-        } else {
-            vacateAll(died, dispatcher);
-        }
-        makeRoomFor(born.size());
-        isSorted_ = isSorted_ && born.empty();
-        if (areMany) {
-            settleInParts(born, *onThreads);
-        } else {
-            settle(born);
-        }
-    } catch (...) {
-        closeVacant();
-        throw;
+    const detail::OnFailure close([&] { closeVacant(); });
+    if (areMany) {
+        vacateInParts(died, dispatcher, *onThreads);
+    } else {
+        vacateAll(died, dispatcher);
+    }
+    makeRoomFor(born.size());
+    isSorted_ = isSorted_ && born.empty();
+    if (areMany) {
+        settleInParts(born, *onThreads);
+    } else {
+        settle(born);
     }
     closeVacant();
 }
@@ -223,16 +220,17 @@ void PairCache::vacateInParts(std::span<const BulletProxyPair> died, btDispatche
         }
     }
     if (mustRetire.load(std::memory_order_relaxed)) {
-        try {
-            detail::ensureCapacity(retired_, retired_.size() + died.size());
-        } catch (...) {
-            for (std::size_t i = 0; i < died.size(); ++i) {
-                if (found[i] != kNone) {
-                    ids_.insert(died[i].ids(), found[i]);
+        const auto makeRoom = [&] {
+            const detail::OnFailure putBack([&] {
+                for (std::size_t i = 0; i < died.size(); ++i) {
+                    if (found[i] != kNone) {
+                        ids_.insert(died[i].ids(), found[i]);
+                    }
                 }
-            }
-            throw;
-        }
+            });
+            detail::ensureCapacity(retired_, retired_.size() + died.size());
+        };
+        makeRoom();
         for (std::size_t i = 0; i < died.size(); ++i) {
             if (found[i] != kNone) {
                 retire(pairs_[static_cast<int>(found[i])], died[i].ids(), dispatcher);
@@ -285,12 +283,8 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
     std::vector<PairSortKey> notes = notesOfAll(proxies);
     places_.clear();
     detail::ensureCapacity(places_, notes.size());
-    try {
-        vacateAll(notes, dispatcher, remover);
-    } catch (...) {
-        closeVacant();
-        throw;
-    }
+    const detail::OnFailure close([&] { closeVacant(); });
+    vacateAll(notes, dispatcher, remover);
     closeVacant();
     scratch_ = std::move(notes);
     freeRetiredAsListed();

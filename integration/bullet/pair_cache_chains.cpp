@@ -5,11 +5,11 @@
 
 #include <integration/bullet/pair_cache.hpp>
 
+#include <broadphase/core/caught.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <exception>
-#include <new>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -66,9 +66,7 @@ void PairCache::chainIfWorth() {
         return;
     }
     pairsScanned_ = 0;
-    try {
-        links_.resize(2 * ids_.size());
-    } catch (const std::bad_alloc&) {
+    if (!detail::hasRoomFor([&] { links_.resize(2 * ids_.size()); })) {
         return;
     }
     for (std::size_t i = chained; i < ids_.size(); ++i) {
@@ -79,13 +77,11 @@ void PairCache::chainIfWorth() {
 // Of a place that is not among the chained, nothing. Chains are a convenience: where there is no memory
 // for one there are none.
 void PairCache::chainPair(std::uint32_t index) noexcept {
-    if (!isChained(index)) {
-        return;
-    }
-    try {
+    const auto chainBoth = [&] {
         chain(2 * index);
         chain(2 * index + 1);
-    } catch (const std::exception&) {
+    };
+    if (isChained(index) && !detail::hasRoomFor(chainBoth)) {
         dropChains();
     }
 }
@@ -154,9 +150,7 @@ void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
 void PairCache::removePairsOfOne(btBroadphaseProxy& proxy, btDispatcher* dispatcher,
                                  Remover remover) {
     std::vector<PairSortKey> notes;
-    try {
-        notes = notesOf(proxy);
-    } catch (const std::bad_alloc&) {
+    if (!detail::hasRoomFor([&] { notes = notesOf(proxy); })) {
         removeUnnoted(proxy, dispatcher, remover);
         return;
     }

@@ -4,6 +4,7 @@
 
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/on_failure.hpp>
 #include <broadphase/move_batch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/lone_moves.inl>
@@ -223,12 +224,8 @@ void SpatialHashBroadphase::removePairsOf(std::span<btBroadphaseProxy* const> pr
         }
         return;
     }
-    try {
-        watch_.cache->removePairsOf(proxies, dispatcher, PairCache::Remover::broadphase);
-    } catch (...) {
-        isCacheBehind_ = true;  // for nobody is destroyed
-        throw;
-    }
+    const detail::OnFailure follow([&] { isCacheBehind_ = true; });  // for nobody is destroyed
+    watch_.cache->removePairsOf(proxies, dispatcher, PairCache::Remover::broadphase);
 }
 
 std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {

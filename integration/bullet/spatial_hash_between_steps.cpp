@@ -5,6 +5,7 @@
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <broadphase/core/on_failure.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
 #include <algorithm>
@@ -77,23 +78,19 @@ void SpatialHashBroadphase::putBackWhatWasTakenOut(btDispatcher* dispatcher) {
     if (watch_.takenOut == nullptr) {
         return;
     }
-    try {
-        std::vector<BulletProxyPair> bulletPairs = *watch_.takenOut;
-        std::vector<ProxyPair> pairs;
-        pairs.reserve(bulletPairs.size());
-        for (const BulletProxyPair& pair : bulletPairs) {
-            pairs.push_back(pairOf(pair.lower(), pair.upper()));
-        }
-        static_cast<void>(pairs_.refilter(pairs, cacheFilter()));
-        std::erase_if(bulletPairs, [&](const BulletProxyPair& pair) {
-            return !pairs_.isPair(pairOf(pair.lower(), pair.upper()));
-        });
-        watch_.takenOut = nullptr;
-        applyToCache({}, bulletPairs, dispatcher);
-    } catch (...) {
-        watch_.isMoreTakenOut = true;
-        throw;
+    const detail::OnFailure askAboutAll([&] { watch_.isMoreTakenOut = true; });
+    std::vector<BulletProxyPair> bulletPairs = *watch_.takenOut;
+    std::vector<ProxyPair> pairs;
+    pairs.reserve(bulletPairs.size());
+    for (const BulletProxyPair& pair : bulletPairs) {
+        pairs.push_back(pairOf(pair.lower(), pair.upper()));
     }
+    static_cast<void>(pairs_.refilter(pairs, cacheFilter()));
+    std::erase_if(bulletPairs, [&](const BulletProxyPair& pair) {
+        return !pairs_.isPair(pairOf(pair.lower(), pair.upper()));
+    });
+    watch_.takenOut = nullptr;
+    applyToCache({}, bulletPairs, dispatcher);
 }
 
 // Where not all are noted, for want of memory: all are asked about, and then compared.

@@ -4,6 +4,8 @@
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/limits.hpp>
+#include <broadphase/core/on_failure.hpp>
+#include <broadphase/core/raise.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/body_motion.hpp>
 #include <integration/bullet/detail/lone_moves.inl>
@@ -15,7 +17,6 @@
 #include <atomic>
 #include <limits>
 #include <sstream>
-#include <stdexcept>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -32,7 +33,7 @@ namespace {
 const SpatialHashConfig& checked(const SpatialHashConfig& config) {
     const std::string error = configError(config);
     if (!error.empty()) {
-        throw std::invalid_argument(error);
+        detail::raiseInvalidArgument(error);
     }
     return config;
 }
@@ -92,15 +93,11 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     detail::checkCount(static_cast<std::size_t>(lastUniqueId_) + 1, std::numeric_limits<int>::max(),
                        "All unique ids are used up. Without proxies, resetPool() counts anew.");
     Proxy& proxy = place({aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask});
-    try {
-        if (isEager(proxy, dispatcher)) {
-            findPairsNow(proxy, dispatcher);
-        } else {
-            findGhostPairsNow(proxy, dispatcher);
-        }
-    } catch (...) {
-        destroyProxy(&proxy, dispatcher);
-        throw;
+    const detail::OnFailure destroy([&] { destroyProxy(&proxy, dispatcher); });
+    if (isEager(proxy, dispatcher)) {
+        findPairsNow(proxy, dispatcher);
+    } else {
+        findGhostPairsNow(proxy, dispatcher);
     }
     return &proxy;
 }
@@ -309,27 +306,23 @@ private:
 
 void SpatialHashBroadphase::apply(const PairChanges& changes, std::size_t birthsAtOnce,
                                   btDispatcher* dispatcher) {
-    try {
-        if (changes.died.empty() && changes.born.empty()) {
-            applyToCache({}, {}, dispatcher);  // which frees what is to be freed
-            return;
-        }
-        PairLists lists(*this);
-        // The first births, as many as there are deaths at least, go with these, to take their places.
-        findBulletPairs(changes.died, lists.died);
-        std::span<const ProxyPair> born = changes.born;
-        std::size_t count = std::min(born.size(), std::max(lists.died.size(), birthsAtOnce));
-        do {
-            findBulletPairs(born.first(count), lists.born);
-            applyToCache(lists.died, lists.born, dispatcher);
-            lists.died.clear();
-            born = born.subspan(count);
-            count = std::min(born.size(), birthsAtOnce);
-        } while (count > 0);
-    } catch (...) {
-        isCacheBehind_ = true;
-        throw;
+    const detail::OnFailure follow([&] { isCacheBehind_ = true; });
+    if (changes.died.empty() && changes.born.empty()) {
+        applyToCache({}, {}, dispatcher);  // which frees what is to be freed
+        return;
     }
+    PairLists lists(*this);
+    // The first births, as many as there are deaths at least, go with these, to take their places.
+    findBulletPairs(changes.died, lists.died);
+    std::span<const ProxyPair> born = changes.born;
+    std::size_t count = std::min(born.size(), std::max(lists.died.size(), birthsAtOnce));
+    do {
+        findBulletPairs(born.first(count), lists.born);
+        applyToCache(lists.died, lists.born, dispatcher);
+        lists.died.clear();
+        born = born.subspan(count);
+        count = std::min(born.size(), birthsAtOnce);
+    } while (count > 0);
 }
 
 /// While changes reach the cache. What a callback changes meanwhile may come too early: of a pair that it
@@ -390,12 +383,8 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
         }
     }
     isCacheBehind_ = false;
-    try {
-        applyToCache(lists.died, lists.born, dispatcher);
-    } catch (...) {
-        isCacheBehind_ = true;
-        throw;
-    }
+    const detail::OnFailure follow([&] { isCacheBehind_ = true; });
+    applyToCache(lists.died, lists.born, dispatcher);
 }
 
 // Caches with deferred removal ignore removeOverlappingPair() and keep duplicates; their user is to

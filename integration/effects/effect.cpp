@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/effects/effect.hpp>
 
+#include <broadphase/core/raise.inl>
 #include <integration/effects/undeclared_effect.hpp>
 
 #include <algorithm>
@@ -40,5 +41,17 @@ UndeclaredEffect::UndeclaredEffect(EffectSet oneOf, std::string_view call)
                        '.'),
       effect_(*std::find_if(kAllEffects.begin(), kAllEffects.end(),
                             [oneOf](Effect effect) { return oneOf.contains(effect); })) {}
+
+namespace detail {
+
+void raiseUndeclared(Effect effect, std::string_view call) {
+    raise(UndeclaredEffect(effect, call));
+}
+
+void raiseUndeclared(EffectSet oneOf, std::string_view call) {
+    raise(UndeclaredEffect(oneOf, call));
+}
+
+}  // namespace detail
 
 }  // namespace hashphase

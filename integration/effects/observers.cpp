@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/effects/observers.hpp>
 
+#include <broadphase/core/on_failure.hpp>
+#include <broadphase/core/raise.hpp>
 #include <integration/effects/detail/parts.hpp>
 #include <integration/effects/observers_frame.inl>
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace hashphase {
 
@@ -22,7 +23,7 @@ Observers<Scalar>::~Observers() = default;
 template <class Scalar>
 void Observers<Scalar>::declare(const SceneEffects& effects) {
     if (const std::string error = effectsError(effects); !error.empty()) {
-        throw std::invalid_argument(error);
+        detail::raiseInvalidArgument(error);
     }
     std::unique_ptr<Culling> culling;
     const bool hasCuller = effects_.culling && culling_;
@@ -30,14 +31,10 @@ void Observers<Scalar>::declare(const SceneEffects& effects) {
         culling = std::make_unique<Culling>(static_cast<Scalar>(effects.culling->margin));
         culling->view = hasCuller ? culling_->view : culling->view;
     }
-    try {
-        detail::makeIf(effects.proximity.has_value(), proximity_);
-        detail::makeIf(effects.zones.has_value(), zones_);
-        detail::makeIf(effects.radar.has_value(), radar_);
-    } catch (...) {
-        dropUndeclared();
-        throw;
-    }
+    const detail::OnFailure dropMade([&] { dropUndeclared(); });
+    detail::makeIf(effects.proximity.has_value(), proximity_);
+    detail::makeIf(effects.zones.has_value(), zones_);
+    detail::makeIf(effects.radar.has_value(), radar_);
     if (culling) {
         culling_ = std::move(culling);
     }
@@ -76,7 +73,7 @@ void Observers<Scalar>::compile() {
 template <class Scalar>
 void Observers<Scalar>::demand(Effect effect, const char* call) const {
     if (!effects_.set().contains(effect)) {
-        throw UndeclaredEffect(effect, call);
+        detail::raiseUndeclared(effect, call);
     }
 }
 
@@ -85,7 +82,7 @@ template <class Part>
 Part& Observers<Scalar>::partOf(const std::unique_ptr<Part>& part, Effect effect,
                                 const char* call) {
     if (!part) {
-        throw UndeclaredEffect(effect, call);
+        detail::raiseUndeclared(effect, call);
     }
     return *part;
 }

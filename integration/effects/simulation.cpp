@@ -5,12 +5,13 @@
 #include <integration/effects/simulation_plan.inl>
 
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/on_failure.hpp>
+#include <broadphase/core/raise.hpp>
 #include <integration/effects/detail/parts.hpp>
 #include <integration/effects/detail/simulation_parts.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 namespace hashphase {
@@ -39,31 +40,27 @@ Simulation<Scalar>::~Simulation() = default;
 template <class Scalar>
 void Simulation<Scalar>::declare(const SceneEffects& effects) {
     if (const std::string error = simulationError(effects); !error.empty()) {
-        throw std::invalid_argument(error);
+        detail::raiseInvalidArgument(error);
     }
     const bool hasIndex = effects.set().containsAny(kGridEffects);
     const bool keepsIndex = hasIndex && index_ && index_->config == effects.grid;
     std::unique_ptr<Index> index;
     std::unique_ptr<Walkers> walkers;
     std::vector<std::uint32_t> vacant;
-    try {
-        makeParts(effects);
-        if (effects.terrain && walkers_->up != static_cast<Eigen::Index>(effects.terrain->up)) {
-            walkers = std::make_unique<Walkers>(effects.terrain->up);
-        }
-        if (hasIndex && !keepsIndex) {
-            index = makeIndex(effects.grid);
-        }
-        for (std::size_t body = positions_.size(); !hasIndex && body-- > 0;) {
-            if (!isAlive(body)) {
-                vacant.push_back(static_cast<std::uint32_t>(body));
-            }
-        }
-        observers_.declare(effects);
-    } catch (...) {
-        dropUndeclared();
-        throw;
+    const detail::OnFailure dropMade([&] { dropUndeclared(); });
+    makeParts(effects);
+    if (effects.terrain && walkers_->up != static_cast<Eigen::Index>(effects.terrain->up)) {
+        walkers = std::make_unique<Walkers>(effects.terrain->up);
     }
+    if (hasIndex && !keepsIndex) {
+        index = makeIndex(effects.grid);
+    }
+    for (std::size_t body = positions_.size(); !hasIndex && body-- > 0;) {
+        if (!isAlive(body)) {
+            vacant.push_back(static_cast<std::uint32_t>(body));
+        }
+    }
+    observers_.declare(effects);
     if (effects_.sleeping && effects.sleeping &&
         effects_.sleeping->interestRadius != effects.sleeping->interestRadius) {
         sleep_->mustLook = true;
@@ -134,7 +131,7 @@ void Simulation<Scalar>::makeParts(const SceneEffects& effects) {
 template <class Scalar>
 void Simulation<Scalar>::demand(Effect effect, const char* call) const {
     if (!effects_.set().contains(effect)) {
-        throw UndeclaredEffect(effect, call);
+        detail::raiseUndeclared(effect, call);
     }
 }
 
@@ -240,7 +237,7 @@ std::size_t Simulation<Scalar>::indexOf(BodyId id) const {
     constexpr const char* kSentence = "Only a body that was not removed can be asked about.";
     HASHPHASE_ASSERT(contains(id), kSentence);
     if (!contains(id)) {
-        throw std::out_of_range(kSentence);
+        detail::raiseOutOfRange(kSentence);
     }
     return id.index;
 }
@@ -322,7 +319,7 @@ Terrain<Scalar>& Simulation<Scalar>::ground() {
 template <class Scalar>
 const Grid<Scalar>& Simulation<Scalar>::grid() const {
     if (!index_) {
-        throw UndeclaredEffect(kGridEffects, "grid()");
+        detail::raiseUndeclared(kGridEffects, "grid()");
     }
     return index_->grid;
 }

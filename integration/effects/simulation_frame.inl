@@ -6,6 +6,8 @@
 
 #include <integration/effects/detail/simulation_parts.hpp>
 
+#include <broadphase/core/on_failure.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -25,16 +27,12 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
     parallelFor_ = &parallelFor;
     farthestMove_ = 0;
     cost_ = std::exchange(between_, {});
-    try {
-        for (const Phase& phase : phases_) {
-            (this->*phase.run)();
-            if (watch_) {
-                watch_(phase.name);
-            }
+    const detail::OnFailure recovered([&] { recover(); });
+    for (const Phase& phase : phases_) {
+        (this->*phase.run)();
+        if (watch_) {
+            watch_(phase.name);
         }
-    } catch (...) {
-        recover();
-        throw;
     }
     parallelFor_ = nullptr;
     changedOutside_ = false;

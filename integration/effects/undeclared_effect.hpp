@@ -26,4 +26,13 @@ private:
     Effect effect_;
 };
 
+namespace detail {
+
+/// Throws UndeclaredEffect(effect, call).
+[[noreturn]] void raiseUndeclared(Effect effect, std::string_view call);
+/// Throws UndeclaredEffect(oneOf, call).
+[[noreturn]] void raiseUndeclared(EffectSet oneOf, std::string_view call);
+
+}  // namespace detail
+
 }  // namespace hashphase

@@ -4,6 +4,7 @@
 #include <integration/terrain/terrain_queries.inl>
 
 #include <broadphase/core/ensure_capacity.hpp>
+#include <broadphase/core/on_failure.hpp>
 #include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
@@ -56,18 +57,16 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& corne
     const Aabb<Scalar> boundsBefore = bounds_;
     const Point tilesBefore = tilesPerMetre_;
     Aabb<Scalar> box;
-    try {
-        grid_->reserve(grid_->size() + count);
-        detail::ensureCapacity(triangles_, triangles_.size() + count);
-        detail::ensureCapacity(proxies_, proxies_.size() + count);
-        for (std::size_t i = 0; i < count; ++i) {
-            addOne(cornersOf(i), added, box);
-        }
-    } catch (...) {
+    const detail::OnFailure addNone([&] {
         removeFrom(added.first);
         bounds_ = boundsBefore;
         tilesPerMetre_ = tilesBefore;
-        throw;
+    });
+    grid_->reserve(grid_->size() + count);
+    detail::ensureCapacity(triangles_, triangles_.size() + count);
+    detail::ensureCapacity(proxies_, proxies_.size() + count);
+    for (std::size_t i = 0; i < count; ++i) {
+        addOne(cornersOf(i), added, box);
     }
     if (!box.isEmpty()) {
         noteReach(box);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/detail/cache_watch.hpp>
 
-#include <exception>
+#include <broadphase/core/caught.hpp>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -21,7 +21,7 @@ void CacheWatch::begin(PairCache& watched) noexcept {
 }
 
 void CacheWatch::note(const btBroadphasePair& pair) noexcept {
-    try {
+    isMoreTakenOut |= !hasRoomFor([&] {
         if (takenOut != nullptr && takenOut->size() == takenOut->capacity()) {
             prune();
         }
@@ -32,9 +32,7 @@ void CacheWatch::note(const btBroadphasePair& pair) noexcept {
             takenOut->reserve(2 * takenOut->size() + 8);
         }
         takenOut->emplace_back(*pair.m_pProxy0, *pair.m_pProxy1);
-    } catch (const std::exception&) {
-        isMoreTakenOut = true;
-    }
+    });
 }
 
 void CacheWatch::pruneTakenOut() noexcept {
