@@ -18,11 +18,13 @@
 // HASHPHASE_HAS_NEON          instructions, and the compiler their functions
 // HASHPHASE_HAS_SIMD128
 // HASHPHASE_HAS_EXCEPTIONS    1 where this code is compiled with exceptions (without -fno-exceptions)
+// HASHPHASE_HAS_RTTI          1 where it may ask for types when it runs (without -fno-rtti)
 
 #include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <cstring>
 
 #if defined(__clang__) || defined(__GNUC__)
 #define HASHPHASE_ALWAYS_INLINE gnu::always_inline
@@ -68,6 +70,11 @@
 #else
 #define HASHPHASE_HAS_EXCEPTIONS 0
 #endif
+#if defined(__cpp_rtti) || defined(_CPPRTTI)
+#define HASHPHASE_HAS_RTTI 1
+#else
+#define HASHPHASE_HAS_RTTI 0
+#endif
 
 namespace hashphase::detail {
 
@@ -101,6 +108,19 @@ template <std::floating_point Scalar>
     return static_cast<Scalar>(__builtin_fabs(static_cast<double>(x)));
 #else
     return std::fabs(x);
+#endif
+}
+
+/// Whether dynamic_cast may ask an object, which has virtual functions: its class, and this code, were
+/// compiled with RTTI. (Where that is not seen in the object, only this code is looked at.)
+template <class Object>
+[[nodiscard]] bool knowsItsType([[maybe_unused]] const Object& object) noexcept {
+#if HASHPHASE_HAS_RTTI && (defined(__clang__) || defined(__GNUC__)) && !defined(_MSC_VER)
+    const void* const* virtualTable = nullptr;
+    std::memcpy(&virtualTable, static_cast<const void*>(&object), sizeof(virtualTable));
+    return virtualTable[-1] != nullptr;
+#else
+    return HASHPHASE_HAS_RTTI != 0;
 #endif
 }
 

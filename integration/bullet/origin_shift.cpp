@@ -125,18 +125,32 @@ void shiftJoint(btTypedConstraint& joint, const btVector3& shift) {
 
 }  // namespace
 
-bool shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
-                      const btVector3& shift) {
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
+
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+
+bool shiftWorldWithoutJoints(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
+                             const btVector3& shift) {
     if (!canShift(world, broadphase, shift)) {
         return false;
     }
     broadphase.shiftOrigin(shift);  // first: nothing else takes memory
     shiftObjects(world, shift);
     shiftContacts(world.getDispatcher(), shift);
-    if (auto* const dynamics = dynamic_cast<btDynamicsWorld*>(&world)) {
-        for (int i = 0; i < dynamics->getNumConstraints(); ++i) {
-            shiftJoint(*dynamics->getConstraint(i), shift);
-        }
+    return true;
+}
+
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+bool shiftWorldOrigin(btDynamicsWorld& world, SpatialHashBroadphase& broadphase,
+                      const btVector3& shift) {
+    if (!detail::shiftWorldWithoutJoints(world, broadphase, shift)) {
+        return false;
+    }
+    for (int i = 0; i < world.getNumConstraints(); ++i) {
+        shiftJoint(*world.getConstraint(i), shift);
     }
     return true;
 }

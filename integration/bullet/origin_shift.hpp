@@ -12,6 +12,8 @@
 // Memory    Where it runs out, std::bad_alloc is passed on, and nothing is shifted.
 // Misuse    Soft bodies and multibodies keep coordinates that are not known here. A world with such bodies,
 //           and a shift that is not finite, are asserted: then nothing is shifted, and false is returned.
+// RTTI      None is needed for a btDynamicsWorld, or what is derived from it. A btCollisionWorld is asked
+//           whether it is one; where it cannot say (-fno-rtti), and has rigid bodies, that is asserted, too.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -29,8 +31,20 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// world, zones, cameras, terrains. Every motion state is asked for its place and told the new one, whether
 /// its body moves or not. Returns whether the world was shifted; if not, nothing has changed. Cost: a look at
 /// each object, contact and joint, and SpatialHashBroadphase::shiftOrigin().
+[[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btDynamicsWorld& world,
+                                                            SpatialHashBroadphase& broadphase,
+                                                            const btVector3& shift);
+/// The same for any world.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btCollisionWorld& world,
                                                             SpatialHashBroadphase& broadphase,
                                                             const btVector3& shift);
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
+
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+
+[[nodiscard]] bool shiftWorldWithoutJoints(btCollisionWorld& world,
+                                           SpatialHashBroadphase& broadphase,
+                                           const btVector3& shift);
+
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/parallel_aabbs.hpp>
 
+#include <integration/bullet/detail/living_broadphase.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
@@ -31,7 +32,7 @@ void marginBox(const btCollisionObject& object, const btTransform& at, btVector3
 }  // namespace
 
 bool WorldAabbs::update(btCollisionWorld& world) {
-    auto* const broadphase = dynamic_cast<SpatialHashBroadphase*>(world.getBroadphase());
+    auto* const broadphase = detail::LivingBroadphase::find(world.getBroadphase());
     if (broadphase == nullptr || !broadphase->config().parallelFor) {
         return false;
     }

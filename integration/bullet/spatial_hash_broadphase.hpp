@@ -28,10 +28,10 @@
 //           call calculateOverlappingPairs(), shiftOrigin() or resetPool(); asserted.
 // Memory    Where it runs out, std::bad_alloc is passed on and the call may be repeated: createProxy() has
 //           created nothing, shiftOrigin() has shifted nothing, setAabb() has moved the proxy. The first
-//           calculateOverlappingPairs() that returns brings the cache up to date, including missing pairs of
-//           ghosts. Bullet's own arrays do not report a lack of memory.
-// Misuse    Proxies that are not alive, proxies of other broadphases, spans of different lengths in a
-//           batch, and rays without a callback are asserted.
+//           calculateOverlappingPairs() that returns brings the cache up to date, and ghosts' pairs as well.
+//           Bullet's own arrays do not report a lack of memory.
+// Misuse    Proxies that are not alive or another broadphase's, spans of different lengths in a batch, and
+//           rays without a callback are asserted.
 
 #include <broadphase/core/group_kinds.hpp>
 #include <broadphase/core/stable_array.hpp>
@@ -39,6 +39,7 @@
 #include <broadphase/pairs.hpp>
 #include <broadphase/sweeps.hpp>
 #include <integration/bullet/detail/cache_watch.hpp>
+#include <integration/bullet/detail/living_broadphase.hpp>
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/pair_cache.hpp>
 #include <integration/bullet/precision.hpp>
@@ -417,6 +418,7 @@ private:
         return static_cast<Proxy*>(proxy);
     }
 
+    detail::LivingBroadphase living_{*this};
     SpatialHashConfig config_;
     Grid<btScalar> grid_;
     std::unique_ptr<Sweeps<btScalar>> sweeps_;  // if the configuration asks for it
@@ -426,19 +428,17 @@ private:
     std::vector<int> uniqueIds_;          // by ProxyId::index; 0 where no proxy is alive
     int lastUniqueId_ = 0;
 
-    bool groupsDecide_ = false;    // who may pair, and no callback
-    bool mustNoteGroups_ = false;  // of all
-    bool isCacheBehind_ = false;   // of changes that did not all reach it
-    bool isApplying_ = false;      // changes to the cache
-
+    bool groupsDecide_ = false;            // who may pair, and no callback
+    bool mustNoteGroups_ = false;          // of all
+    bool isCacheBehind_ = false;           // of changes that did not all reach it
+    bool isApplying_ = false;              // changes to the cache
     std::unique_ptr<PairCache> ownCache_;  // if none was given
     detail::CacheWatch watch_;             // of the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
     detail::GroupKinds groupKinds_;
-    // Of what was created or moved since pairs were calculated.
-    detail::GroupKinds::Set changedKinds_ = 0;
-    // Whose groups have been looked at since then, a bit for each slot; empty while nobody needs to know.
-    std::vector<std::uint64_t> seen_;
+    detail::GroupKinds::Set changedKinds_ =
+        0;                             // of what was created or moved since the last update
+    std::vector<std::uint64_t> seen_;  // slots whose groups are known since then; or empty
     std::size_t seenCount_ = 0;
     std::unique_ptr<detail::FlatSet> ghosts_;  // their slots; made with the first
     detail::PeakWatch peaks_;                  // of the cache

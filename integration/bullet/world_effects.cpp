@@ -2,6 +2,7 @@
 #include <integration/bullet/world_effects.hpp>
 
 #include <broadphase/diagnostics.hpp>
+#include <integration/bullet/detail/living_broadphase.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/world_cost.hpp>
 
@@ -187,7 +188,7 @@ void WorldConfigurator::setFilter() {
 }
 
 void WorldConfigurator::askAboutPairsAgain() {
-    if (auto* const hash = dynamic_cast<SpatialHashBroadphase*>(world_->getBroadphase())) {
+    if (auto* const hash = detail::LivingBroadphase::find(world_->getBroadphase())) {
         hash->refilterAll(world_->getDispatcher());
         return;
     }

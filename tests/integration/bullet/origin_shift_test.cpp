@@ -299,6 +299,10 @@ TEST(WorldOriginShift, MovesJointsThatHoldABodyToTheWorld) {
         world.shift({kKilometre, 0, 0});
         world.step(30);
         EXPECT_LT((world.place(0) - place + btVector3(kKilometre, 0, 0)).length(), 1e-3);
+        btCollisionWorld& anyWorld = world.world();
+        EXPECT_TRUE(shiftWorldOrigin(anyWorld, world.hash(), {-kKilometre, 0, 0}));
+        world.step(30);
+        EXPECT_LT((world.place(0) - place).length(), 1e-3);
         world.world().removeConstraint(joint.get());
     }
 }

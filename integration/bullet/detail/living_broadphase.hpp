@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include <integration/bullet/export.hpp>
+#include <integration/bullet/precision.hpp>
+
+class btBroadphaseInterface;
+
+namespace hashphase {
+inline namespace HASHPHASE_BULLET_NAMESPACE {
+class SpatialHashBroadphase;
+}
+
+namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
+
+/// Lists a SpatialHashBroadphase while it lives, so that one can be told from others without RTTI.
+class HASHPHASE_BULLET_EXPORT LivingBroadphase {
+public:
+    explicit LivingBroadphase(SpatialHashBroadphase& broadphase);
+    ~LivingBroadphase();
+    LivingBroadphase(const LivingBroadphase&) = delete;
+    LivingBroadphase& operator=(const LivingBroadphase&) = delete;
+
+    /// The broadphase as a SpatialHashBroadphase; null when it is another one. Any thread may call it. Cost: a
+    /// look at each of the program's, under a lock.
+    [[nodiscard]] static SpatialHashBroadphase* find(
+        const btBroadphaseInterface* broadphase) noexcept;
+
+private:
+    SpatialHashBroadphase* broadphase_;
+};
+
+}  // namespace detail::inline HASHPHASE_BULLET_NAMESPACE
+}  // namespace hashphase

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Zlib
+
+// Of a world of which the program does not say whether it has joints. Apart from the rest: a Bullet that was
+// compiled without RTTI does not link with this.
+
+#include <integration/bullet/origin_shift.hpp>
+
+#include <broadphase/core/compiler.hpp>
+#include <broadphase/diagnostics.hpp>
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+btDynamicsWorld* dynamicsWorldOf([[maybe_unused]] btCollisionWorld& world) {
+#if HASHPHASE_HAS_RTTI
+    if (detail::knowsItsType(world)) {
+        return dynamic_cast<btDynamicsWorld*>(&world);
+    }
+#endif
+    return nullptr;
+}
+
+bool mayHaveJoints(btCollisionWorld& world) {
+    const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size() && !detail::knowsItsType(world); ++i) {
+        if (btRigidBody::upcast(objects[i]) != nullptr) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+bool shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
+                      const btVector3& shift) {
+    if (btDynamicsWorld* const dynamics = dynamicsWorldOf(world)) {
+        return shiftWorldOrigin(*dynamics, broadphase, shift);
+    }
+    const bool isKnown = !mayHaveJoints(world);
+    HASHPHASE_ASSERT(isKnown, "Without RTTI, a world with bodies is shifted as a btDynamicsWorld.");
+    return isKnown && detail::shiftWorldWithoutJoints(world, broadphase, shift);
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
