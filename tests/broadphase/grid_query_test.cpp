@@ -4,6 +4,7 @@
 
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <demos/stability/run_together.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/population.hpp>
 #include <tests/support/script.hpp>
@@ -187,19 +188,13 @@ struct GridThreads : testing::Test {
         const std::function<void(std::size_t thread, std::string& wrong)>& read) {
         std::atomic<std::size_t> ready{0};
         std::array<std::string, kThreads> wrong;
-        std::vector<std::thread> threads;
-        for (std::size_t t = 0; t < kThreads; ++t) {
-            threads.emplace_back([&, t] {
-                ready.fetch_add(1);
-                while (ready.load() < kThreads) {
-                    std::this_thread::yield();
-                }
-                read(t, wrong[t]);
-            });
-        }
-        for (std::thread& thread : threads) {
-            thread.join();
-        }
+        demos::runTogether(kThreads, [&](std::size_t t) {
+            ready.fetch_add(1);
+            while (demos::hasThreads() && ready.load() < kThreads) {
+                std::this_thread::yield();
+            }
+            read(t, wrong[t]);
+        });
         for (const std::string& text : wrong) {
             ASSERT_EQ(text, "");
         }

@@ -3,6 +3,7 @@
 // What a ray tells of a box, what rays cost a grid that is asked for none, and many regions at once. In which
 // boxes rays break is among the hard cases (demos/stability/cases/rays.cpp).
 
+#include <demos/stability/run_together.hpp>
 #include <tests/support/population.hpp>
 
 #include <gtest/gtest.h>
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -126,9 +126,7 @@ void forOnTwoThreads(std::size_t count, std::size_t grain, LoopBody body) {
             body(begin, std::min(begin + grain, count));
         }
     };
-    std::thread second([&] { run(grain); });
-    run(0);
-    second.join();
+    demos::runTogether(2, [&](std::size_t thread) { run(thread * grain); });
 }
 
 template <class Scalar>

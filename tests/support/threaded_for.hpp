@@ -6,13 +6,13 @@
 // when all threads are done.
 
 #include <broadphase/parallel_for.hpp>
+#include <demos/stability/run_together.hpp>
 #include <tests/support/random.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -34,20 +34,16 @@ public:
             std::swap(ranges[i - 1], ranges[random_.below(static_cast<std::uint32_t>(i))]);
         }
         std::vector<std::exception_ptr> thrown(std::min(threadCount_, ranges.size()));
-        std::vector<std::jthread> threads;  // which are joined as it is left
-        for (std::size_t t = 0; t < thrown.size(); ++t) {
-            threads.emplace_back([&, t] {
-                try {
-                    for (std::size_t i = t; i < ranges.size(); i += threadCount_) {
-                        body(ranges[i].first, ranges[i].second);
-                    }
-                } catch (...) {
-                    thrown[t] = std::current_exception();
-                }
-            });
-        }
         mostRanges_ = std::max(mostRanges_, ranges.size());
-        threads.clear();
+        demos::runTogether(thrown.size(), [&](std::size_t t) {
+            try {
+                for (std::size_t i = t; i < ranges.size(); i += threadCount_) {
+                    body(ranges[i].first, ranges[i].second);
+                }
+            } catch (...) {
+                thrown[t] = std::current_exception();
+            }
+        });
         for (const std::exception_ptr& each : thrown) {
             if (each != nullptr) {
                 std::rethrow_exception(each);

@@ -8,11 +8,11 @@
 #include <broadphase/radius_search.hpp>
 #include <broadphase/simd/kernels.hpp>
 #include <broadphase/sweeps.hpp>
+#include <demos/stability/run_together.hpp>
 
 #include <array>
 #include <map>
 #include <numeric>
-#include <thread>
 
 namespace hashphase::demos {
 namespace {
@@ -56,16 +56,9 @@ public:
             std::min(count_, (count + grain - 1) / std::max<std::size_t>(grain, 1));
         std::size_t& most = mostParts_[grain];
         most = std::max(most, parts);
-        std::vector<std::thread> threads;
-        for (std::size_t part = 1; part < parts; ++part) {
-            threads.emplace_back([=] { body(count * part / parts, count * (part + 1) / parts); });
-        }
-        if (parts > 0) {
-            body(0, count / parts);
-        }
-        for (std::thread& thread : threads) {
-            thread.join();
-        }
+        runTogether(parts, [=](std::size_t part) {
+            body(count * part / parts, count * (part + 1) / parts);
+        });
     }
 
 private:

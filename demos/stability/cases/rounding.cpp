@@ -5,9 +5,9 @@
 #include <demos/stability/cases/cases.hpp>
 
 #include <demos/stability/flush_to_zero.hpp>
+#include <demos/stability/run_together.hpp>
 
 #include <array>
-#include <thread>
 
 namespace hashphase::demos {
 namespace {
@@ -77,7 +77,7 @@ void judgeModesOfThreads(CaseRun<Scalar>& run) {
                 };
                 const std::size_t middle = count > grain ? count / 2 : 0;
                 if (middle > 0) {
-                    std::thread(work, 0, middle).join();
+                    runTogether(1, [&](std::size_t) { work(0, middle); });
                 }
                 if (middle < count) {
                     work(middle, count);

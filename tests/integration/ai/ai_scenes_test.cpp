@@ -10,6 +10,7 @@
 #include <integration/ai/zones.hpp>
 
 #include <broadphase/cells_region.hpp>
+#include <demos/stability/run_together.hpp>
 #include <tests/integration/scene_lives.hpp>
 #include <tests/support/ai_oracles.hpp>
 #include <tests/support/radius_oracle.hpp>
@@ -22,7 +23,6 @@
 #include <map>
 #include <numeric>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace hashphase::test {
@@ -381,13 +381,9 @@ TEST(AgentsOnThreads, AskEverythingAtTheSameTime) {
         agents.push_back(std::make_unique<Agents<float>>(i));
     }
     for (int frame = 0; frame < 20; ++frame) {
-        std::vector<std::thread> threads;
-        for (const auto& each : agents) {
-            threads.emplace_back([&] { each->ask(world.grid, script.proxies()); });
-        }
-        for (std::thread& thread : threads) {
-            thread.join();
-        }
+        demos::runTogether(agents.size(), [&](std::size_t thread) {
+            agents[thread]->ask(world.grid, script.proxies());
+        });
         ASSERT_FALSE(testing::Test::HasFailure()) << "frame " << frame;
         if (frame % 3 != 1) {
             world.grid.update();

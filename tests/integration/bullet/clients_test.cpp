@@ -4,6 +4,7 @@
 // frame for all of them: picking, culling, AI, terrain. They find what a look at every body finds, and
 // what they find in a grid of their own with the same boxes.
 
+#include <demos/stability/run_together.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/group_filter.hpp>
 #include <integration/bullet/static_triangles.hpp>
@@ -18,7 +19,6 @@
 #include <deque>
 #include <memory>
 #include <numeric>
-#include <thread>
 #include <vector>
 
 namespace hashphase::test {
@@ -268,16 +268,10 @@ TEST(AllClientsTest, AskOnSeveralThreadsAtOnceRightAfterManyMoves) {
     for (int frame = 0; frame < 6; ++frame) {
         world.step();
         world.world().updateAabbs();  // of all that has moved in the step: waits to be filed
-        std::vector<std::thread> threads;
-        for (Own& own : all) {
-            threads.emplace_back([&] {
-                own.clients.ask(world.grid());
-                own.heights = world.heights();
-            });
-        }
-        for (std::thread& thread : threads) {
-            thread.join();
-        }
+        demos::runTogether(all.size(), [&](std::size_t thread) {
+            all[thread].clients.ask(world.grid());
+            all[thread].heights = world.heights();
+        });
         for (const Own& own : all) {
             EXPECT_TRUE(own.clients.answers() == all[0].clients.answers());
             EXPECT_EQ(own.heights, all[0].heights);

@@ -3,6 +3,7 @@
 // rayTest and aabbTest against brute force with Bullet's own predicates: every proxy that passes,
 // once, whatever has or has not happened since it was created or set.
 
+#include <demos/stability/run_together.hpp>
 #include <tests/integration/bullet/queries.hpp>
 #include <tests/integration/bullet/scripted_boxes.hpp>
 #include <tests/support/handlers.hpp>
@@ -11,7 +12,6 @@
 
 #include <cmath>
 #include <limits>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -208,20 +208,14 @@ TEST(Queries, RunOnManyThreadsAtOnceAndGoOnWhenProcessReturnsFalse) {
             rays.push_back(world.someRay());
         }
         std::vector<int> wrong(4, 0);
-        std::vector<std::thread> threads;
-        for (std::size_t thread = 0; thread < wrong.size(); ++thread) {
-            threads.emplace_back([&, thread] {
-                for (std::size_t i = 0; i < rays.size(); ++i) {
-                    const Ray& ray = rays[(i * 7 + thread * 31) % rays.size()];
-                    const Box box = boxAround(ray.from, {1, 1, 1});
-                    wrong[thread] += world.found(ray, i % 2 == 0) != world.expected(ray);
-                    wrong[thread] += world.found(box, i % 2 == 0) != world.expected(box);
-                }
-            });
-        }
-        for (std::thread& thread : threads) {
-            thread.join();
-        }
+        demos::runTogether(wrong.size(), [&](std::size_t thread) {
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                const Ray& ray = rays[(i * 7 + thread * 31) % rays.size()];
+                const Box box = boxAround(ray.from, {1, 1, 1});
+                wrong[thread] += world.found(ray, i % 2 == 0) != world.expected(ray);
+                wrong[thread] += world.found(box, i % 2 == 0) != world.expected(box);
+            }
+        });
         EXPECT_EQ(wrong, std::vector<int>(4, 0));
     }
 }
