@@ -21,10 +21,18 @@
 // HASHPHASE_HAS_RTTI          1 where it may ask for types when it runs (without -fno-rtti)
 
 #include <bit>
+#include <cfloat>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+
+// A float that is calculated with more bits (x87) is another one where it is stored, and a box would no longer
+// be filed where it is looked for.
+#if FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 2
+#error                                                                                             \
+    "hashphase needs float and double as they are. On 32-bit x86 compile with -msse2 -mfpmath=sse."
+#endif
 
 #if defined(__clang__) || defined(__GNUC__)
 #define HASHPHASE_ALWAYS_INLINE gnu::always_inline

@@ -144,16 +144,19 @@ void BoxTree::sortPlaces(int bits) {
     places2_.resize(places_.size());
     for (int pass = 0; pass < passes; ++pass) {
         const int shift = pass * digitBits;
-        const std::uint64_t digits = (1U << digitBits) - 1;
+        const std::uint32_t digits = (1U << digitBits) - 1;
+        const auto digitOf = [=](const Place& place) {
+            return static_cast<std::uint32_t>(place.onCurve >> shift) & digits;
+        };
         starts.fill(0);
         for (const Place& place : places_) {
-            ++starts[((place.onCurve >> shift) & digits) + 1];
+            ++starts[digitOf(place) + 1];
         }
-        for (std::size_t digit = 0; digit < digits; ++digit) {
+        for (std::uint32_t digit = 0; digit < digits; ++digit) {
             starts[digit + 1] += starts[digit];
         }
         for (const Place& place : places_) {
-            places2_[starts[(place.onCurve >> shift) & digits]++] = place;
+            places2_[starts[digitOf(place)]++] = place;
         }
         places_.swap(places2_);
     }

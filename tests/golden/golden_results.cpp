@@ -120,7 +120,7 @@ private:
         visit("volumes", volume);
         Culler<Scalar> culler;
         culler.look(world_.grid(), volume);
-        hashes_["culled"].add(culler.count());
+        hashes_["culled"].addCount(culler.count());
     }
 
     void askAll() {

@@ -11,9 +11,9 @@
 #include <tests/support/threaded_for.hpp>
 
 #include <algorithm>
-#include <array>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -25,7 +25,7 @@
 
 namespace hashphase::test {
 
-/// Fowler, Noll, Vo, 64 bits, over what numbers are made of; both zeros count as one.
+/// Fowler, Noll, Vo, 64 bits, over what numbers are made of, the lowest byte first; both zeros count as one.
 class GoldenHash {
 public:
     template <class Number>
@@ -34,18 +34,20 @@ public:
         if constexpr (std::is_floating_point_v<Number>) {
             number += Number(0);
         }
-        std::array<unsigned char, sizeof(Number)> bytes{};
-        std::memcpy(bytes.data(), &number, sizeof(Number));
-        for (const unsigned char byte : bytes) {
-            hash_ = (hash_ ^ byte) * 0x100000001b3U;
+        using Bits = std::conditional_t<sizeof(Number) == 8, std::uint64_t, std::uint32_t>;
+        const auto bits = std::bit_cast<Bits>(number);
+        for (unsigned shift = 0; shift < 8 * sizeof(Number); shift += 8) {
+            hash_ = (hash_ ^ ((bits >> shift) & 0xff)) * 0x100000001b3U;
         }
     }
+    /// Where counts have 32 bits as well as where they have 64.
+    void addCount(std::size_t count) { add(std::uint64_t{count}); }
     template <class Number>
     void addAll(const std::vector<Number>& numbers) {
         for (const Number& number : numbers) {
             add(number);
         }
-        add(numbers.size());
+        addCount(numbers.size());
     }
     template <class A, class B>
     void addAll(const std::vector<std::pair<A, B>>& pairs) {
@@ -53,7 +55,7 @@ public:
             add(a);
             add(b);
         }
-        add(pairs.size());
+        addCount(pairs.size());
     }
     [[nodiscard]] GoldenLine line(std::string name) const {
         return {std::move(name), hash_, count_};
