@@ -20,7 +20,10 @@ endif()
 # Bullet, Eigen and GoogleTest come from imported targets and count as system headers.
 function(hashphase_own_target target)
     target_compile_features(${target} PUBLIC cxx_std_20)
-    set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+    # For shared libraries, where there are any.
+    get_property(isShareable GLOBAL PROPERTY TARGET_SUPPORTS_SHARED_LIBS)
+    set_target_properties(
+        ${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE "${isShareable}")
     if(HASHPHASE_QUICK_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         # A gigabyte before the compiler looks for memory to give back: a tenth of its time.
         target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=1048576)
