@@ -30,8 +30,7 @@
 // A float that is calculated with more bits (x87) is another one where it is stored, and a box would no longer
 // be filed where it is looked for.
 #if FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 2
-#error                                                                                             \
-    "hashphase needs float and double as they are. On 32-bit x86 compile with -msse2 -mfpmath=sse."
+#error "On 32-bit x86 hashphase needs -msse2 -mfpmath=sse: x87 rounds otherwise."
 #endif
 
 #if defined(__clang__) || defined(__GNUC__)
