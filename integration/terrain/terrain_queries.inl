@@ -286,9 +286,9 @@ QueryCost Terrain<Scalar>::searchInOrder(std::size_t count, const NumberOf& numb
 
 template <class Scalar>
 template <class Search, class MakeSearch>
-[[HASHPHASE_NO_INLINE]] QueryCost Terrain<Scalar>::searchByTiles(
-    std::span<const Point> points, std::span<Found> found, ParallelFor parallelFor,
-    const MakeSearch& makeSearch) const {
+QueryCost Terrain<Scalar>::searchByTiles(std::span<const Point> points, std::span<Found> found,
+                                         ParallelFor parallelFor,
+                                         const MakeSearch& makeSearch) const {
     QueryCost cost;
     for (std::size_t first = 0; first < points.size(); first += TileOrder::kMost) {
         const std::size_t count = std::min(points.size() - first, TileOrder::kMost);
