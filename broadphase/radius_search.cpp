@@ -239,7 +239,7 @@ void RadiusSearch<Scalar>::prepare(Scalar radius) {
         const auto begin = columns_[axis].begin();
         const auto isFirst = [begin](Scalar x) { return x == *begin; };
         if (view_.scale == 1 && wrappedGrid_.extent[axis] == 1 &&
-            std::all_of(begin, begin + agentCount_, isFirst)) {
+            std::all_of(begin, begin + static_cast<std::ptrdiff_t>(agentCount_), isFirst)) {
             same = axis;
         }
     }

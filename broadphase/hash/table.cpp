@@ -63,7 +63,7 @@ std::size_t Table<Scalar>::countBuckets(std::span<const PaddedBox<Scalar>> boxes
                        bucketOfEntry_, find, parallelFor);
     std::size_t count = bucketStart_[levels_.back().firstBucket];
     for (const auto& [dense, hashed] : classes) {
-        const auto first = bucketStart_.begin() + hashed->firstBucket;
+        const auto* const first = bucketStart_.data() + hashed->firstBucket;
         count += dense->isEmpty()
                      ? 0
                      : std::accumulate(first, first + hashed->bucketCount, std::size_t{0});

@@ -40,7 +40,7 @@ Corners viewCorners(const detail::CameraInverse& inverse, DepthRange depthRange,
     cube.max().template head<2>() = rectangle.max().template cast<double>();
     Corners corners;
     for (std::uint32_t i = 0; i < 8; ++i) {
-        const auto end = [&](std::uint32_t axis) {
+        const auto end = [&](int axis) {
             return ((i >> axis & 1) == 0 ? cube.min() : cube.max())[axis];
         };
         Corner corner{inverse.at(end(0), end(1), end(2))};
