@@ -2,7 +2,8 @@
 #pragma once
 
 // Runs the loops of the broadphase on the threads of Bullet's task scheduler: see btSetTaskScheduler().
-// Without a scheduler, as in a Bullet built without threads, they run on the caller's thread.
+// Without a scheduler they run on the caller's thread. A Bullet built without threads (BT_THREADSAFE) has none
+// to offer, but takes a scheduler of the program's own.
 
 #include <broadphase/core/first_exception.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -34,13 +35,15 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
     if (count == 0) {
         return;
     }
-    if (btGetTaskScheduler() == nullptr || count > kMost) {  // more than Bullet can count
+    btITaskScheduler* const scheduler = btGetTaskScheduler();
+    if (scheduler == nullptr || count > kMost) {  // more than Bullet can count
         body(0, count);
     } else {
         detail::FirstException exception;
-        btParallelFor(0, static_cast<int>(count),
-                      static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)),
-                      Body(body, exception));
+        // btParallelFor() is for a Bullet with threads alone.
+        scheduler->parallelFor(0, static_cast<int>(count),
+                               static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)),
+                               Body(body, exception));
         exception.rethrow();
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <integration/bullet/bullet_parallel_for.hpp>
+#include <broadphase/core/first_exception.hpp>
 #include <tests/integration/bullet/boxes.hpp>
 #include <tests/support/threaded_for.hpp>
 
@@ -41,26 +41,7 @@ TEST(Threads, GiveTheSamePairsInTheSameOrder) {
     EXPECT_GT(threadedFor.mostRanges(), 1U);
 }
 
-TEST(BulletFor, RunsEveryIterationOnce) {
-    for (const std::size_t count : {0, 1, 7, 1000}) {
-        std::vector<int> times(count, 0);
-        bulletFor(count, 16, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                ++times[i];
-            }
-        });
-        EXPECT_EQ(std::ranges::count(times, 1), static_cast<std::ptrdiff_t>(count));
-    }
-}
-
-TEST(BulletFor, ThrowsWhatALoopThrows) {
-    const auto fail = [](std::size_t, std::size_t) {
-        throw std::runtime_error("as one part does");
-    };
-    EXPECT_THROW(bulletFor(1000, 16, fail), std::runtime_error);
-}
-
-// Debian's Bullet has no threads.
+// On any threads.
 TEST(FirstException, IsKeptWhileOtherThreadsEnd) {
     ThreadedFor threadedFor(3, 0x5eed0903);
     std::vector<int> times(1000, 0);
