@@ -6,7 +6,7 @@
 #
 # Tried in this order:
 #   targets      that exist already: Bullet as part of the same build, or from Conan or vcpkg
-#   pkg-config   `bullet`, `bullet-float64`
+#   pkg-config   `bullet`, which Bullet calls itself in either precision; Debian's `bullet-float64`
 #   config file  Debian's has paths relative to BULLET_ROOT_DIR, and names libraries that are in
 #                other packages; those of Conan and vcpkg make targets
 #   FindBullet   comes with CMake, and cannot tell the precision
@@ -32,6 +32,9 @@ macro(_hashphase_bullet_from_targets)
             get_target_property(directory BulletCollision SOURCE_DIR)
             get_filename_component(includes "${directory}" DIRECTORY)
             get_property(definitions DIRECTORY "${directory}" PROPERTY COMPILE_DEFINITIONS)
+            # What its headers know, as BT_THREADSAFE and BT_CLAMP_VELOCITY_TO.
+            set(headerDefinitions ${definitions})
+            list(FILTER headerDefinitions INCLUDE REGEX "^BT_")
             set(builtHere TRUE)
         endif()
     endif()
@@ -40,13 +43,18 @@ endmacro()
 macro(_hashphase_bullet_from_pkg_config)
     find_package(PkgConfig QUIET)
     if(PkgConfig_FOUND)
-        string(MAKE_C_IDENTIFIER "HASHPHASE_PC_${component}" prefix)
-        pkg_search_module(${prefix} QUIET bullet${suffix} bullet)
-        set(libraries ${${prefix}_LINK_LIBRARIES})
-        list(FILTER libraries INCLUDE REGEX "BulletDynamics|BulletCollision|LinearMath")
-        set(includes ${${prefix}_INCLUDE_DIRS})
-        set(definitions ${${prefix}_CFLAGS_OTHER})
-        set(pkgConfigName ${${prefix}_MODULE_NAME})
+        foreach(name IN ITEMS bullet bullet${suffix})
+            string(MAKE_C_IDENTIFIER "HASHPHASE_PC_${name}" prefix)
+            pkg_check_modules(${prefix} QUIET ${name})
+            set(pkgConfigName ${name})
+            set(libraries ${${prefix}_LINK_LIBRARIES})
+            list(FILTER libraries INCLUDE REGEX "BulletDynamics|BulletCollision|LinearMath")
+            set(includes ${${prefix}_INCLUDE_DIRS})
+            set(definitions ${${prefix}_CFLAGS_OTHER})
+            if("-D${ownDefinitions}" IN_LIST definitions)
+                break()  # a `bullet` in double precision
+            endif()
+        endforeach()
     endif()
 endmacro()
 
@@ -128,6 +136,7 @@ function(hashphase_import_bullet component)
         set(libraries "")
         set(includes "")
         set(definitions "")
+        set(headerDefinitions "")
         set(builtHere FALSE)
         set(pkgConfigName "")
         cmake_language(CALL _hashphase_bullet_from_${source})
@@ -143,7 +152,7 @@ function(hashphase_import_bullet component)
             # Global, for those who take hashphase in by add_subdirectory.
             add_library(${target} INTERFACE IMPORTED GLOBAL)
             target_include_directories(${target} INTERFACE ${includes})
-            target_compile_definitions(${target} INTERFACE ${ownDefinitions})
+            target_compile_definitions(${target} INTERFACE ${ownDefinitions} ${headerDefinitions})
             target_link_libraries(${target} INTERFACE ${libraries})
             set_target_properties(${target} PROPERTIES HASHPHASE_PKG_CONFIG_NAME "${pkgConfigName}")
             return()
