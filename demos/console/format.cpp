@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/format.hpp>
 
+#include <demos/console/from_chars.hpp>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -220,7 +222,7 @@ std::optional<double> finiteNumber(std::string_view word) {
     const char* const end = plain.data() + plain.size();
     double number = 0;
     const bool isNumber =
-        std::from_chars(plain.data(), end, number) == std::from_chars_result{end, std::errc()};
+        fromChars(plain.data(), end, number) == std::from_chars_result{end, std::errc()};
     return isNumber && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 

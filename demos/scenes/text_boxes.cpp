@@ -2,11 +2,11 @@
 #include <demos/scenes/text_boxes.hpp>
 
 #include <demos/console/format.hpp>
+#include <demos/console/from_chars.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <system_error>
@@ -36,7 +36,7 @@ public:
         const std::size_t end = std::min(line_.find_first_of(kBlanks, position_), line_.size());
         const std::string_view word = line_.substr(position_, end - position_);
         float value = 0;
-        const auto [parsed, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        const auto [parsed, error] = fromChars(word.data(), word.data() + word.size(), value);
         if (error == std::errc::result_out_of_range) {
             fail(quotedWord(word) + " does not fit a single-precision number");
         }
