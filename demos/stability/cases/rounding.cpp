@@ -261,7 +261,7 @@ void judgeShiftedLife(CaseRun<Scalar>& run, double unit, const Vector3<double>& 
     PairScene<Scalar> there(run, castTo<Scalar>(shiftedBoxes(unit, shift, run.seed)));
     Random random(run.seed);
     std::array<std::uint64_t, 2> tests{};
-    for (int frame = 0; frame < 8; ++frame) {
+    for (std::uint32_t frame = 0; frame < 8; ++frame) {
         here.judge();
         there.judge();
         run.compare(there.reported(), here.reported());

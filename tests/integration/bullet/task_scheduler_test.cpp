@@ -3,6 +3,7 @@
 // Bullet's task schedulers: none, its sequential one, one of the program's own, and Bullet's own threads, which
 // a Bullet has that was built with BT_THREADSAFE (and Debian's was not). Worlds on these threads.
 
+#include <demos/stability/run_together.hpp>
 #include <integration/bullet/bullet_parallel_for.hpp>
 #include <integration/bullet/parallel_aabbs.hpp>
 #include <tests/integration/bullet/boxes.hpp>
@@ -27,12 +28,12 @@
 namespace hashphase::test {
 namespace {
 
-/// A program's own, on three threads.
+/// A program's own, on three threads where there are threads.
 class OwnScheduler : public btITaskScheduler {
 public:
     OwnScheduler() : btITaskScheduler("own") {}
-    [[nodiscard]] int getMaxNumThreads() const override { return 3; }
-    [[nodiscard]] int getNumThreads() const override { return 3; }
+    [[nodiscard]] int getMaxNumThreads() const override { return demos::hasThreads() ? 3 : 1; }
+    [[nodiscard]] int getNumThreads() const override { return getMaxNumThreads(); }
     void setNumThreads(int /*count*/) override {}
     void parallelFor(int begin, int end, int grain, const btIParallelForBody& body) override {
         threads_(static_cast<std::size_t>(end - begin), static_cast<std::size_t>(grain),
