@@ -1,10 +1,30 @@
 # SPDX-License-Identifier: Zlib
 # shellcheck shell=bash
 #
-# Sourced by the checks of other platforms, which compile Bullet and others for them: sources by Debian's
-# source packages, kept in build/sources.
+# Sourced by the checks of other platforms, which need Bullet and others there: by Debian's packages, which
+# are unpacked in build/sources and not installed.
 
 tools+=(dpkg-source:dpkg-dev)
+
+# private_apt <type> <architecture> <argument>...: apt-get with the system's own package servers and lists
+# of packages apart from the system's, of the type deb or deb-src.
+private_apt() {
+    local lists=$root/build/sources/$1-$2
+    local apt=(apt-get -q -o Dir::State::lists="$lists/state" -o Dir::Etc::sourceparts="$lists"
+        -o Dir::Etc::sourcelist="$lists/servers.sources" -o APT::Sandbox::User=root
+        -o APT::Architecture="$2" -o APT::Architectures="$2")
+    if [[ ! -d $lists/state ]]; then
+        mkdir -p "$lists/state"
+        if compgen -G '/etc/apt/sources.list.d/*.sources' >/dev/null; then
+            sed "s/^Types:.*/Types: $1/" /etc/apt/sources.list.d/*.sources >"$lists/servers.sources"
+        fi
+        if [[ -s /etc/apt/sources.list ]]; then
+            sed -n "s/^deb /$1 /p" /etc/apt/sources.list >"$lists/servers.list"
+        fi
+        "${apt[@]}" update
+    fi
+    "${apt[@]}" "${@:3}"
+}
 
 # source_package <name>: prints the folder of the newest source package of that name that this system's
 # package servers have; downloads it when it is not there yet.
@@ -12,23 +32,60 @@ source_package() {
     local folder=$root/build/sources/$1
     if [[ ! -d $folder ]]; then
         say "downloading the sources of $1"
-        local lists=$root/build/sources/lists
-        mkdir -p "$lists"
-        local apt=(apt-get -q -o Dir::State::lists="$lists/state" -o Dir::Etc::sourceparts="$lists"
-            -o Dir::Etc::sourcelist="$lists/deb-src.sources" -o APT::Sandbox::User=root)
-        mkdir -p "$lists/state"
-        # The system's own lists, asked for sources in place of packages.
-        if compgen -G '/etc/apt/sources.list.d/*.sources' >/dev/null; then
-            cat /etc/apt/sources.list.d/*.sources | sed 's/^Types:.*/Types: deb-src/' >"$lists/deb-src.sources"
-        fi
-        if [[ -s /etc/apt/sources.list ]]; then
-            sed -n 's/^deb /deb-src /p' /etc/apt/sources.list >"$lists/old.list"
-        fi
+        mkdir -p "$folder.part"
         (
-            cd "$lists" || exit
-            "${apt[@]}" update && "${apt[@]}" source --download-only "$1" && rm -rf "$folder.part" &&
-                dpkg-source --no-check -x "$1"_*.dsc "$folder.part" && mv "$folder.part" "$folder"
+            cd "$folder.part" &&
+                private_apt deb-src "$(dpkg --print-architecture)" source --download-only "$1" &&
+                dpkg-source --no-check -x ./*.dsc sources && mv sources "$folder" && rm -r "$folder.part"
         ) >&2 || return
     fi
     echo "$folder"
+}
+
+# foreign_packages <architecture> <package>...: prints the folder that has these packages of another
+# architecture, unpacked; they bring no others along.
+foreign_packages() {
+    local folder=$root/build/sources/$1
+    if [[ ! -d $folder ]]; then
+        say "downloading packages for $1"
+        mkdir -p "$folder.part/packages"
+        (
+            cd "$folder.part/packages" && private_apt deb "$1" download "${@:2}" &&
+                for package in *.deb; do dpkg -x "$package" ..; done && mv "$folder.part" "$folder"
+        ) >&2 || return
+    fi
+    echo "$folder"
+}
+
+# run_half <program> <half> <launcher>...: runs half of the tests of a program of GoogleTest, and shows what
+# it said if one fails.
+run_half() {
+    local log=$1.$2.log
+    GTEST_TOTAL_SHARDS=2 GTEST_SHARD_INDEX=$2 "${@:3}" "$1" --gtest_brief=1 >"$log" 2>&1 || {
+        local status=$?
+        cat "$log"
+        echo "${1##*/}: exit status $status"
+        return 1
+    }
+}
+
+# run_programs <folder> <launcher>...: runs the `programs` that were built in the folder by the launcher,
+# and says how many tests passed.
+run_programs() {
+    local outcome=0 name
+    local -a built=()
+    for name in "${programs[@]}"; do
+        built+=("$(find "$1/tests" -type f \( -name "$name-tests" -o -name "$name-tests.*[em]" \))")
+    done
+    say "running ${programs[*]/%/-tests}"
+    export -f run_half
+    printf '%s\n' "${built[@]}" | xargs -I{} printf '%s\n0\n%s\n1\n' {} {} |
+        xargs -d '\n' -n2 -P2 bash -c 'run_half "$0" "$1" '"${*:2}" >&2 || outcome=1
+    cat "${built[@]/%/.0.log}" "${built[@]/%/.1.log}" | awk '
+        /^\[  PASSED  \]/ { passed += $4 }
+        /^\[  SKIPPED \] [0-9]+ test/ { skipped += $4 }
+        /^\[  FAILED  \] [0-9]+ test/ { failed += $4 }
+        END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped; exit passed == 0 }' ||
+        outcome=1
+    return "$outcome"
 }

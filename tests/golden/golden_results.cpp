@@ -108,14 +108,20 @@ private:
         }
     }
 
+    /// Eigen's own adds up in an order that depends on the processor.
+    static typename ConvexRegion<Scalar>::Plane planeThrough(const Vector3<Scalar>& point,
+                                                             const Vector3<Scalar>& normal) {
+        const Vector3<Scalar> terms = normal.cwiseProduct(point);
+        return {normal, -(terms[0] + (terms[1] + terms[2]))};
+    }
+
     /// A slanted pyramid from one box to the other.
     void askVolume(const Aabb<Scalar>& from, const Aabb<Scalar>& to) {
         const Vector3<Scalar> along = to.min() - from.min();
         const Vector3<Scalar> across(along[1], -along[0], along[2] / 4);
-        using Plane = Eigen::Hyperplane<Scalar, 3>;
-        const std::array<Plane, 4> planes{Plane(along, from.min()), Plane(-along, to.max()),
-                                          Plane(along + 2 * across, from.min()),
-                                          Plane(along - 2 * across, from.min())};
+        const std::array planes{planeThrough(from.min(), along), planeThrough(to.max(), -along),
+                                planeThrough(from.min(), along + 2 * across),
+                                planeThrough(from.min(), along - 2 * across)};
         const ConvexRegion<Scalar> volume(planes);
         visit("volumes", volume);
         Culler<Scalar> culler;

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Zlib
+# shellcheck shell=bash
+#
+# The check `arm64` of tests/check.
+
+# shellcheck source=tests/checks/sources.sh
+source "$root/tests/checks/sources.sh"
+
+tools+=(aarch64-linux-gnu-g++:g++-aarch64-linux-gnu qemu-aarch64:qemu-user)
+
+# kernel_program <compiler> <build> <kernels>: links kernel-instructions there, and prints from which address
+# to which the kernels' code is.
+kernel_program() {
+    local library=$2/broadphase/libhashphase_broadphase.a
+    "$1" -std=c++20 -O1 -static -no-pie -I"$root" -isystem /usr/include/eigen3 -Wl,-Map="$2/kernels.map" \
+        -DHASHPHASE_ENABLE_ASSERTS=1 -DHASHPHASE_SHARED=0 -Wno-psabi \
+        "$root/tests/checks/kernel_instructions.cpp" "$library" -o "$2/kernel-instructions" >&2 || return
+    grep -E '^ \.text +0x' "$2/kernels.map" | grep -F "($3.cpp.o)" | awk '{ print $2, $3 }'
+}
+
+# instructions_of <emulator> <program> <operation> <set> <first address> <size>: how many the kernels run.
+instructions_of() {
+    "$1" -singlestep -d nochain,exec -D /dev/stdout "$2" "$3" "$4" |
+        awk -F/ -v first="$(printf 'x%016x' "$5")" -v last="$(printf 'x%016x' $(($5 + $6)))" '
+            /^Trace/ { at = "x" $2; count += at >= first && at < last }
+            END { print count + 0 }'
+}
+
+# What NEON's kernels run is at most 1.3 times what SSE2's run for the same boxes.
+compare_kernel_instructions() {
+    local arm64=$build neon sse2 operation a b
+    configure arm64-twin -DCMAKE_BUILD_TYPE=RelWithDebInfo -DHASHPHASE_BUILD_TESTS=OFF
+    cmake --build "$build" --target hashphase_broadphase >&2
+    sse2=$(kernel_program g++ "$build" kernels_sse2)
+    neon=$(kernel_program aarch64-linux-gnu-g++ "$arm64" kernels_neon)
+    say "instructions of the kernels, as QEMU counts them: NEON, SSE2, ratio"
+    for operation in $("$build/kernel-instructions"); do
+        # shellcheck disable=SC2086
+        a=$(instructions_of qemu-aarch64 "$arm64/kernel-instructions" "$operation" NEON $neon)
+        # shellcheck disable=SC2086
+        b=$(instructions_of qemu-x86_64 "$build/kernel-instructions" "$operation" SSE2 $sse2)
+        awk -v name="$operation" -v a="$a" -v b="$b" 'BEGIN {
+            printf "    %-20s %10d %10d %6.2f\n", name, a, b, a / b
+            exit !(a > 0 && a <= 1.3 * b)
+        }' >&2 || return
+    done
+}
+
+check_arm64() {
+    local sysroot
+    programs=(golden broadphase bullet clients)
+    sysroot=$(foreign_packages arm64 libbullet-dev libbullet3.24 libgtest-dev libgmp-dev libgmp10)
+    configure arm64 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DEigen3_DIR=/usr/share/eigen3/cmake \
+        -DCMAKE_TOOLCHAIN_FILE="$root/tests/checks/arm64.cmake" -DHASHPHASE_SYSROOT="$sysroot" \
+        -DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST
+    build_tests
+    run_programs "$build" qemu-aarch64 -L /usr/aarch64-linux-gnu
+    compare_kernel_instructions
+}
