@@ -88,13 +88,13 @@ template <class Scalar>
 auto Store<Scalar>::beginReadings(std::size_t count) const -> Reading {
     expectQueries(count);
     const Reading reading = tables.reading();
-    countRead(reading.isFresh ? 0 : proxies.waiting.size() * count);
+    countRead(reading.isFresh ? 0 : std::uint64_t{proxies.waiting.size()} * count);
     return reading;
 }
 
 // Returns how much of the list of changes queries have read by now.
 template <class Scalar>
-std::uint64_t Store<Scalar>::countRead(std::size_t count) const noexcept {
+std::uint64_t Store<Scalar>::countRead(std::uint64_t count) const noexcept {
     auto& read = writable(*this).tables.waitingRead;
     return read.fetch_add(count, std::memory_order_relaxed) + count;
 }

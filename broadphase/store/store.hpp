@@ -311,7 +311,7 @@ struct HASHPHASE_BROADPHASE_EXPORT Store {
     [[nodiscard]] Reading beginReadings(std::size_t count) const;
     void expectQueries(std::size_t count) const;
     void expectRays(std::size_t count) const;
-    std::uint64_t countRead(std::size_t count) const noexcept;
+    std::uint64_t countRead(std::uint64_t count) const noexcept;
     void mendTables() const;
     /// Builds the trees that so many rays, which begin together, are worth.
     void growTrees(const Reading& reading, std::size_t rayCount) const;
