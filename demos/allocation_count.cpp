@@ -6,6 +6,8 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
+#include <memory>
 #include <new>
 
 namespace hashphase::demos {
@@ -29,11 +31,15 @@ std::size_t allocationCount() noexcept {
     }
     throw std::bad_alloc();
 }
+// Before an aligned block stands where what was allocated begins. (Windows has no aligned_alloc().)
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
     hashphase::demos::count.fetch_add(1, std::memory_order_relaxed);
-    const auto step = static_cast<std::size_t>(alignment);
-    if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) {
-        return memory;
+    std::size_t space = size + static_cast<std::size_t>(alignment);
+    if (void* const memory = std::malloc(sizeof(memory) + space)) {
+        void* block = static_cast<char*>(memory) + sizeof(memory);
+        std::align(static_cast<std::size_t>(alignment), size, block, space);
+        std::memcpy(static_cast<char*>(block) - sizeof(memory), &memory, sizeof(memory));
+        return block;
     }
     throw std::bad_alloc();
 }
@@ -43,9 +49,14 @@ std::size_t allocationCount() noexcept {
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
     std::free(memory);
 }
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+[[gnu::noinline]] void operator delete(void* block, std::align_val_t) noexcept {
+    if (block != nullptr) {
+        void* memory = nullptr;
+        std::memcpy(&memory, static_cast<char*>(block) - sizeof(memory), sizeof(memory));
+        std::free(memory);
+    }
 }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+[[gnu::noinline]] void operator delete(void* block, std::size_t,
+                                       std::align_val_t alignment) noexcept {
+    operator delete(block, alignment);
 }

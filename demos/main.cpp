@@ -4,24 +4,21 @@
 // of its own beside this one.
 
 #include <demos/console/program.hpp>
+#include <demos/system/process.hpp>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <system_error>
-
-#include <unistd.h>
+#include <utility>
 
 namespace {
 
-using hashphase::demos::Console;
+using namespace hashphase::demos;
 
-/// Becomes the program; returns only where that cannot be.
+/// Runs the program in place of this one.
 int become(const std::string& name, std::vector<std::string> arguments, Console& console) {
+    const std::filesystem::path path = programBeside(name);
     std::error_code error;
-    const std::filesystem::path path =
-        std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
     if (!std::filesystem::exists(path, error)) {
         return refuse(
             console,
@@ -30,22 +27,17 @@ int become(const std::string& name, std::vector<std::string> arguments, Console&
                                               "libglfw3-dev (Debian, Ubuntu) are installed."
                                             : "."));
     }
-    arguments.insert(arguments.begin(), path.string());
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) {
-        pointers.push_back(argument.data());
+    try {
+        return runInstead(path, std::move(arguments));
+    } catch (const std::system_error& failure) {
+        return refuse(console, path.string() + " cannot be run: " + failure.code().message() + ".");
     }
-    pointers.push_back(nullptr);
-    execv(path.c_str(), pointers.data());  // returns only where it fails
-    const std::string reason = std::strerror(errno);
-    return refuse(console, path.string() + " cannot be run: " + reason + ".");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    using namespace hashphase::demos;
-    Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0, "hashphase"};
+    Console console{std::cout, std::cerr, errIsTerminal(), "hashphase"};
     return startSubcommand({argv + 1, argv + argc}, console,
                            [&console](const std::string& name, std::vector<std::string> rest) {
                                return become("hashphase-" + name, std::move(rest), console);

@@ -17,10 +17,6 @@
 #include <ostream>
 #include <utility>
 
-#if defined(__linux__)
-#include <sched.h>
-#endif
-
 namespace hashphase::demos {
 namespace {
 
@@ -51,20 +47,6 @@ void declare(CLI::App& app, AccuracyOptions& options) {
         ->transform(positiveSeconds());
     app.add_flag("--quiet", options.quiet, "no progress on stderr");
     app.add_flag("--list", options.list, "say which experiments there are");
-}
-
-/// Keeps this thread on the core where it is: the scheduler moves threads, and caches do not move along.
-void pinToThisCore() {
-#if defined(__linux__)
-    const int core = sched_getcpu();
-    if (core >= 0) {
-        cpu_set_t cores;
-        CPU_ZERO(&cores);
-        CPU_SET(static_cast<unsigned>(core), &cores);
-        // Refused in some containers; the times are then a little less steady.
-        static_cast<void>(sched_setaffinity(0, sizeof(cores), &cores));
-    }
-#endif
 }
 
 // An experiment that cannot go on has not shown what it was to show.

@@ -4,6 +4,7 @@
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/process.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -13,8 +14,6 @@
 #include <iterator>
 #include <optional>
 #include <utility>
-
-#include <unistd.h>
 
 namespace hashphase::demos {
 namespace {
@@ -132,7 +131,7 @@ int runSingleCommand(std::vector<std::string> arguments, const Subcommand& comma
 int runMain(int argc, char** argv, Subcommand command) {
     command.name = "hashphase " + command.name;
     const std::vector<std::string> arguments(argv + 1, argv + argc);
-    Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0, command.name};
+    Console console{std::cout, std::cerr, errIsTerminal(), command.name};
     for (const std::string& argument : arguments) {
         console.commandLine += " " + argument;
     }

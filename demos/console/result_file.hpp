@@ -17,7 +17,7 @@ public:
     /// Opens the file; an empty path means none. Throws InputError when it cannot be written.
     explicit ResultFile(const std::string& path) : path_(path) {
         if (!path_.empty()) {
-            file_.open(path_);
+            file_.open(path_, std::ios::binary);  // the same bytes on any system
             refuseIfBad();
         }
     }

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <demos/report/stopwatch.hpp>
+#include <demos/system/limits.hpp>
 
 #include <algorithm>
-
-#include <time.h>
 
 namespace hashphase::demos {
 
@@ -21,18 +20,12 @@ public:
         if (onThreads_) {
             return wall;
         }
-        return std::min(wall, processorMilliseconds() - processorStart_);
+        return std::min(wall, threadMilliseconds() - processorStart_);
     }
 
 private:
-    static double processorMilliseconds() {
-        timespec now{};
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-        return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-    }
-
     bool onThreads_;
-    double processorStart_ = processorMilliseconds();
+    double processorStart_ = threadMilliseconds();
     Stopwatch wall_;  // read inside of the other
 };
 

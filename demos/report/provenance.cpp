@@ -2,28 +2,17 @@
 #include <demos/report/provenance.hpp>
 
 #include <demos/console/program.hpp>
+#include <demos/system/process.hpp>
 
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/kernels.hpp>
 
 #include <LinearMath/btScalar.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <thread>
 
 namespace hashphase::demos {
 namespace {
-
-std::string cpuName() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);) {
-        if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos) {
-            return line.substr(line.find(": ") + 2);
-        }
-    }
-    return "unknown";
-}
 
 std::string compilerName() {
 #if defined(__clang__)
@@ -55,12 +44,9 @@ Provenance gatherProvenance(const std::string& commandLine) {
 #ifdef __OPTIMIZE__
     provenance.optimised = true;
 #endif
-    provenance.cpu = cpuName();
+    provenance.cpu = processorName();
     provenance.cores = std::thread::hardware_concurrency();
-    std::array<double, 3> load{};
-    if (getloadavg(load.data(), static_cast<int>(load.size())) == static_cast<int>(load.size())) {
-        provenance.loadAverage = load;
-    }
+    provenance.loadAverage = loadAverage();
     provenance.commandLine = commandLine;
     return provenance;
 }

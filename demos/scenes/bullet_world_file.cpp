@@ -6,16 +6,16 @@
 
 #if HASHPHASE_HAS_BULLET_IMPORTER
 #include <BulletWorldImporter/btBulletWorldImporter.h>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #endif
 
 #include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
-
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace hashphase::demos {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/stability/exact.hpp>
 
-#include <demos/stability/limit_pause.hpp>
+#include <demos/system/limits.hpp>
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 // Output    What the work writes to stdout or stderr is caught.
 
 #include <demos/stability/case_tally.hpp>
-#include <demos/stability/limit_pause.hpp>
+#include <demos/system/limits.hpp>
 
 #include <functional>
 

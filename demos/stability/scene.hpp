@@ -8,7 +8,7 @@
 #include <demos/scenes/random.hpp>
 #include <demos/stability/exact.hpp>
 #include <demos/stability/hard_case.hpp>
-#include <demos/stability/limit_pause.hpp>
+#include <demos/system/limits.hpp>
 
 #include <algorithm>
 #include <cstdio>

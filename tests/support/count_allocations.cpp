@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <new>
 
 namespace hashphase::test {
@@ -49,39 +50,46 @@ void* countedAllocate(std::size_t size) {
     return std::malloc(size);
 }
 
-// Before each block stands its size, so far before it that the block is aligned.
+// Before each aligned block stands its size, and before that where what was allocated begins.
+struct BlockHead {
+    std::size_t size;
+    void* memory;
+};
 constexpr std::size_t kUsualAlignment = 16;
-static_assert(alignof(std::max_align_t) <= kUsualAlignment && sizeof(std::size_t) <= 16);
+static_assert(alignof(std::max_align_t) <= kUsualAlignment);
 
 [[maybe_unused]] static void* allocate(std::size_t size, std::size_t alignment) {
     if (isRefused()) {
         return nullptr;
     }
     ++allocations;
-    const std::size_t whole = (alignment + size + alignment - 1) / alignment * alignment;
-    auto* const memory = static_cast<char*>(std::aligned_alloc(alignment, whole));
+    std::size_t space = size + alignment;
+    void* const memory = std::malloc(sizeof(BlockHead) + space);
     if (memory == nullptr) {
         return nullptr;
     }
     bytes += size;
-    std::memcpy(memory + alignment - sizeof(size), &size, sizeof(size));
-    return memory + alignment;
+    void* block = static_cast<char*>(memory) + sizeof(BlockHead);
+    std::align(alignment, size, block, space);
+    const BlockHead head{size, memory};
+    std::memcpy(static_cast<char*>(block) - sizeof(head), &head, sizeof(head));
+    return block;
 }
 
-[[maybe_unused]] static void release(void* block, std::size_t alignment) noexcept {
+[[maybe_unused]] static void release(void* block) noexcept {
     if (block == nullptr) {
         return;
     }
-    std::size_t size = 0;
-    std::memcpy(&size, static_cast<char*>(block) - sizeof(size), sizeof(size));
-    bytes -= size;
+    BlockHead head{};
+    std::memcpy(&head, static_cast<char*>(block) - sizeof(head), sizeof(head));
+    bytes -= head.size;
     ++releases;
-    std::free(static_cast<char*>(block) - alignment);
+    std::free(head.memory);
 }
 
 }  // namespace hashphase::test
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(HASHPHASE_KEEPS_NEW)
 
 using hashphase::test::kUsualAlignment;
 
@@ -105,18 +113,17 @@ using hashphase::test::kUsualAlignment;
 [[gnu::noinline]] void* operator new[](std::size_t size) {
     return operator new(size);
 }
-[[gnu::noinline]] void operator delete(void* block, std::align_val_t alignment) noexcept {
-    hashphase::test::release(block, static_cast<std::size_t>(alignment));
+[[gnu::noinline]] void operator delete(void* block, std::align_val_t) noexcept {
+    hashphase::test::release(block);
 }
-[[gnu::noinline]] void operator delete(void* block, std::size_t,
-                                       std::align_val_t alignment) noexcept {
-    hashphase::test::release(block, static_cast<std::size_t>(alignment));
+[[gnu::noinline]] void operator delete(void* block, std::size_t, std::align_val_t) noexcept {
+    hashphase::test::release(block);
 }
 [[gnu::noinline]] void operator delete(void* block) noexcept {
-    hashphase::test::release(block, kUsualAlignment);
+    hashphase::test::release(block);
 }
 [[gnu::noinline]] void operator delete(void* block, std::size_t) noexcept {
-    hashphase::test::release(block, kUsualAlignment);
+    hashphase::test::release(block);
 }
 [[gnu::noinline]] void operator delete[](void* block) noexcept {
     operator delete(block);

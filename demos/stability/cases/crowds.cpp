@@ -7,15 +7,8 @@
 #include <broadphase/radius_search.hpp>
 
 #include <array>
-#include <fstream>
 #include <new>
 #include <stdexcept>
-
-#include <sys/resource.h>
-#include <unistd.h>
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
 
 namespace hashphase::demos {
 namespace {
@@ -195,40 +188,6 @@ constexpr auto allTheSame = [](auto& run) {
 
 // --- Counts beyond 32 bits ------------------------------------------------------------------------
 
-// Sanitizers end a program that runs out of memory.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kCanRunOutOfMemory = false;
-#elif defined(__has_feature)
-constexpr bool kCanRunOutOfMemory =
-    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
-#else
-constexpr bool kCanRunOutOfMemory = true;
-#endif
-
-// While it lives, the process gets no more than so much memory beyond what it has.
-class MemoryLimit {
-public:
-    explicit MemoryLimit(std::uint64_t more) {
-#if defined(__GLIBC__)
-        malloc_trim(0);
-#endif
-        std::uint64_t pages = 0;
-        std::ifstream("/proc/self/statm") >> pages;
-        getrlimit(RLIMIT_AS, &before_);
-        rlimit limit = before_;
-        limit.rlim_cur = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + more;
-        setrlimit(RLIMIT_AS, &limit);
-    }
-    MemoryLimit(const MemoryLimit&) = delete;
-    MemoryLimit& operator=(const MemoryLimit&) = delete;
-    ~MemoryLimit() {
-        setrlimit(RLIMIT_AS, &before_);
-    }
-
-private:
-    rlimit before_{};
-};
-
 // Everybody is everybody's neighbour. What counts is the same code in both precisions, and takes seconds.
 template <class Scalar>
 void judgeCounts(CaseRun<Scalar>& run) {
@@ -271,7 +230,7 @@ void expectMostIsRefused(CaseRun<Scalar>& run) {
 
 constexpr auto beyond32Bits = [](auto& run) {
     using Scalar = ScalarOf<decltype(run)>;
-    if (kCanRunOutOfMemory) {
+    if (MemoryLimit::isPossible()) {
         constexpr std::size_t kCount = 8000;  // 32 million pairs
         const Boxes<Scalar> together(kCount, cubeAt<Scalar>({0, 0, 0}, 1));
         Boxes<Scalar> apart;
@@ -295,7 +254,7 @@ constexpr auto beyond32Bits = [](auto& run) {
         scene.moveAll(apart);
         scene.judge();
     } else {
-        run.note("Under a sanitizer memory cannot run out.");
+        run.note("Memory cannot run out here, as under a sanitizer.");
     }
     if (run.isOurs) {
         if constexpr (std::is_same_v<Scalar, float>) {

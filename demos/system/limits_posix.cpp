@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/system/limits.hpp>
+
+#include <fstream>
+
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <time.h>
+#include <unistd.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
+namespace hashphase::demos {
+namespace {
+
+constexpr std::int64_t kMicroseconds = 1'000'000;
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kCanRunOutOfMemory = false;
+#elif defined(__has_feature)
+constexpr bool kCanRunOutOfMemory =
+    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
+#else
+constexpr bool kCanRunOutOfMemory = true;
+#endif
+
+}  // namespace
+
+LimitPause::LimitPause() {
+    const itimerval off{};
+    itimerval left{};
+    setitimer(ITIMER_PROF, &off, &left);
+    left_ = left.it_value.tv_sec * kMicroseconds + left.it_value.tv_usec;
+}
+
+LimitPause::~LimitPause() {
+    if (left_ != 0) {
+        itimerval left{};
+        left.it_value.tv_sec = static_cast<time_t>(left_ / kMicroseconds);
+        left.it_value.tv_usec = static_cast<suseconds_t>(left_ % kMicroseconds);
+        setitimer(ITIMER_PROF, &left, nullptr);
+    }
+}
+
+bool MemoryLimit::isPossible() noexcept {
+    return kCanRunOutOfMemory;
+}
+
+MemoryLimit::MemoryLimit(std::uint64_t more) {
+#if defined(__GLIBC__)
+    malloc_trim(0);
+#endif
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    rlimit limit{};
+    getrlimit(RLIMIT_AS, &limit);
+    before_ = limit.rlim_cur;
+    limit.rlim_cur = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + more;
+    setrlimit(RLIMIT_AS, &limit);
+}
+
+MemoryLimit::~MemoryLimit() {
+    rlimit limit{};
+    getrlimit(RLIMIT_AS, &limit);
+    limit.rlim_cur = before_;
+    setrlimit(RLIMIT_AS, &limit);
+}
+
+double threadMilliseconds() noexcept {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What the system knows of a program while it runs: process_posix.cpp, process_windows.cpp.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hashphase::demos {
+
+/// Whether somebody reads stderr on a screen.
+[[nodiscard]] bool errIsTerminal() noexcept;
+
+/// Where the program of that name is, if it is beside the one that runs.
+[[nodiscard]] std::filesystem::path programBeside(const std::string& name);
+
+/// Runs the program in this one's place, with what follows its name. Returns its exit code, where there is
+/// anything to return to. Throws std::system_error where it cannot be run.
+[[nodiscard]] int runInstead(const std::filesystem::path& program,
+                             std::vector<std::string> arguments);
+
+/// Keeps this thread on the core where it is: the scheduler moves threads, and caches do not move along.
+/// Where that is refused, times are a little less steady.
+void pinToThisCore() noexcept;
+
+[[nodiscard]] std::string processorName();
+
+/// How many threads were at work, over 1, 5 and 15 minutes.
+[[nodiscard]] std::optional<std::array<double, 3>> loadAverage() noexcept;
+
+}  // namespace hashphase::demos

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/system/process.hpp>
+
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+
+#if defined(__linux__)
+#include <sched.h>
+#endif
+#include <unistd.h>
+
+namespace hashphase::demos {
+
+bool errIsTerminal() noexcept {
+    return isatty(STDERR_FILENO) != 0;
+}
+
+std::filesystem::path programBeside(const std::string& name) {
+    std::error_code error;
+    return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
+}
+
+int runInstead(const std::filesystem::path& program, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), program.string());
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) {
+        pointers.push_back(argument.data());
+    }
+    pointers.push_back(nullptr);
+    execv(program.c_str(), pointers.data());  // returns only where it fails
+    throw std::system_error(errno, std::generic_category());
+}
+
+void pinToThisCore() noexcept {
+#if defined(__linux__)
+    const int core = sched_getcpu();
+    if (core >= 0) {
+        cpu_set_t cores;
+        CPU_ZERO(&cores);
+        CPU_SET(static_cast<unsigned>(core), &cores);
+        static_cast<void>(sched_setaffinity(0, sizeof(cores), &cores));
+    }
+#endif
+}
+
+std::string processorName() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos) {
+            return line.substr(line.find(": ") + 2);
+        }
+    }
+    return "unknown";
+}
+
+std::optional<std::array<double, 3>> loadAverage() noexcept {
+    std::array<double, 3> load{};
+    const auto count = static_cast<int>(load.size());
+    return getloadavg(load.data(), count) == count ? std::optional(load) : std::nullopt;
+}
+
+}  // namespace hashphase::demos
