@@ -164,7 +164,7 @@ ConvexRegion<Scalar> ConvexRegion<Scalar>::exact() const {
     return movedOut(0, Touch::exact);
 }
 
-template class ConvexRegion<float>;
-template class ConvexRegion<double>;
+template class HASHPHASE_INSTANCE_EXPORT ConvexRegion<float>;
+template class HASHPHASE_INSTANCE_EXPORT ConvexRegion<double>;
 
 }  // namespace hashphase

@@ -28,7 +28,7 @@ enum class Touch : std::uint8_t { exact, byPlanes };
 /// precision, 1e-9 in double. A volume may be unbounded; without planes it is all of space. A volume without
 /// a point, or with a plane that is NaN or has an infinite normal, is empty.
 template <class Scalar>
-class HASHPHASE_BROADPHASE_EXPORT ConvexRegion {
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT ConvexRegion {
 public:
     using Plane = Eigen::Hyperplane<Scalar, 3>;
     static constexpr std::size_t kMostPlanes = detail::kMostOwnPlanes;

@@ -6,8 +6,11 @@
 // HASHPHASE_SHARED is 1 where the libraries are shared ones; CMake and pkg-config set it for their users.
 // hashphase_<component>_EXPORTS is set where that library itself is compiled.
 //
-// HASHPHASE_ONE_FOR_ALL stands before a thread_local variable in a header that all libraries of a program
-// share. DLLs cannot share it, and have one each.
+// HASHPHASE_<COMPONENT>_TEMPLATE_EXPORT  the same of a class template that a library instantiates for all, and
+//                              HASHPHASE_INSTANCE_EXPORT where it does: MSVC takes a class template that
+//                              is exported for one that each source instantiates
+// HASHPHASE_ONE_FOR_ALL        before a thread_local variable in a header that all libraries of a program share
+// HASHPHASE_SHARES_VARIABLES   1 where they can. DLLs call a function of the one that has it.
 
 // Every public header includes this one before any code that older standards reject.
 #if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L
@@ -26,18 +29,30 @@
 #define HASHPHASE_SYMBOL_EXPORT __declspec(dllexport)
 #define HASHPHASE_SYMBOL_IMPORT __declspec(dllimport)
 #define HASHPHASE_ONE_FOR_ALL
+#define HASHPHASE_SHARES_VARIABLES 0
 #elif HASHPHASE_SHARED
 #define HASHPHASE_SYMBOL_EXPORT __attribute__((visibility("default")))
 #define HASHPHASE_SYMBOL_IMPORT __attribute__((visibility("default")))
 #define HASHPHASE_ONE_FOR_ALL __attribute__((visibility("default")))
+#define HASHPHASE_SHARES_VARIABLES 1
 #else
 #define HASHPHASE_SYMBOL_EXPORT
 #define HASHPHASE_SYMBOL_IMPORT
 #define HASHPHASE_ONE_FOR_ALL
+#define HASHPHASE_SHARES_VARIABLES 1
+#endif
+#if HASHPHASE_SHARED && defined(_MSC_VER)
+#define HASHPHASE_SYMBOL_TEMPLATE_EXPORT
+#define HASHPHASE_INSTANCE_EXPORT __declspec(dllexport)
+#else
+#define HASHPHASE_SYMBOL_TEMPLATE_EXPORT HASHPHASE_SYMBOL_EXPORT
+#define HASHPHASE_INSTANCE_EXPORT
 #endif
 
 #ifdef hashphase_broadphase_EXPORTS
 #define HASHPHASE_BROADPHASE_EXPORT HASHPHASE_SYMBOL_EXPORT
+#define HASHPHASE_BROADPHASE_TEMPLATE_EXPORT HASHPHASE_SYMBOL_TEMPLATE_EXPORT
 #else
 #define HASHPHASE_BROADPHASE_EXPORT HASHPHASE_SYMBOL_IMPORT
+#define HASHPHASE_BROADPHASE_TEMPLATE_EXPORT HASHPHASE_SYMBOL_IMPORT
 #endif

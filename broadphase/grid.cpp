@@ -174,7 +174,7 @@ std::string Grid<Scalar>::validate() const {
     return store_.validate();
 }
 
-template class Grid<float>;
-template class Grid<double>;
+template class HASHPHASE_INSTANCE_EXPORT Grid<float>;
+template class HASHPHASE_INSTANCE_EXPORT Grid<double>;
 
 }  // namespace hashphase

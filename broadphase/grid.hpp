@@ -70,7 +70,7 @@ inline constexpr std::int64_t kLastCell = 9'000'000'000'000'000'000;
 
 /// Knows every proxy's box, and answers where things are. Scalar is float or double.
 template <class Scalar>
-class HASHPHASE_BROADPHASE_EXPORT Grid {
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Grid {
 public:
     using Box = Aabb<Scalar>;
     using Point = Vector3<Scalar>;

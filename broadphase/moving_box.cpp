@@ -220,7 +220,7 @@ template std::optional<double> detail::firstContactExactly(const MovingBox<float
                                                            const MovingBox<float>&) noexcept;
 template std::optional<double> detail::firstContactExactly(const MovingBox<double>&,
                                                            const MovingBox<double>&) noexcept;
-template class MovingBoxRegion<float>;
-template class MovingBoxRegion<double>;
+template class HASHPHASE_INSTANCE_EXPORT MovingBoxRegion<float>;
+template class HASHPHASE_INSTANCE_EXPORT MovingBoxRegion<double>;
 
 }  // namespace hashphase

@@ -113,7 +113,7 @@ template <class Scalar>
 ///
 /// Where the moving box is a proxy of the grid, the query finds that proxy too: leave it out by a CollectIf.
 template <class Scalar>
-class HASHPHASE_BROADPHASE_EXPORT MovingBoxRegion {
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT MovingBoxRegion {
 public:
     /// Cost: O(1).
     explicit MovingBoxRegion(const MovingBox<Scalar>& moving);

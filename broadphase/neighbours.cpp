@@ -117,7 +117,7 @@ void Neighbours<Scalar>::releaseMemory() noexcept {
     candidates_ = {};
 }
 
-template class Neighbours<float>;
-template class Neighbours<double>;
+template class HASHPHASE_INSTANCE_EXPORT Neighbours<float>;
+template class HASHPHASE_INSTANCE_EXPORT Neighbours<double>;
 
 }  // namespace hashphase

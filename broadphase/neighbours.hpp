@@ -24,7 +24,7 @@ namespace hashphase {
 
 /// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class HASHPHASE_BROADPHASE_EXPORT Neighbours {
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Neighbours {
 public:
     /// Returns every two proxies of the grid whose boxes are at most `distance` [m] apart, each pair once, in
     /// any order. The distance is that between the nearest points (closed), 0 where boxes overlap. A negative

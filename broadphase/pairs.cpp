@@ -134,7 +134,7 @@ std::string Pairs<Scalar>::validate() const {
     return detail::validate(state_);
 }
 
-template class Pairs<float>;
-template class Pairs<double>;
+template class HASHPHASE_INSTANCE_EXPORT Pairs<float>;
+template class HASHPHASE_INSTANCE_EXPORT Pairs<double>;
 
 }  // namespace hashphase

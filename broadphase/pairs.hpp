@@ -41,7 +41,7 @@ class Sweeps;
 
 /// Tells which pairs were born and which died from one update to the next.
 template <class Scalar>
-class HASHPHASE_BROADPHASE_EXPORT Pairs {
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Pairs {
 public:
     /// Keeps a reference to the grid, which must outlive this object, and to `sweeps`, if there are any,
     /// until setSweeps(). The sweeps are of the same grid, which has no other Pairs (asserted). The first

@@ -386,7 +386,7 @@ void RadiusSearch<Scalar>::releaseMemory() noexcept {
     leftOut_ = 0;
 }
 
-template class RadiusSearch<float>;
-template class RadiusSearch<double>;
+template class HASHPHASE_INSTANCE_EXPORT RadiusSearch<float>;
+template class HASHPHASE_INSTANCE_EXPORT RadiusSearch<double>;
 
 }  // namespace hashphase

@@ -45,7 +45,7 @@ namespace hashphase {
 /// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing, unless more threads
 /// work at the same time than ever before.
 template <class Scalar>
-class HASHPHASE_BROADPHASE_EXPORT RadiusSearch {
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT RadiusSearch {
 public:
     using Point = Vector3<Scalar>;
 

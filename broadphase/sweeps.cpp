@@ -67,7 +67,7 @@ std::string Sweeps<Scalar>::validate() const {
     return sweeping_.motions.validate();
 }
 
-template class Sweeps<float>;
-template class Sweeps<double>;
+template class HASHPHASE_INSTANCE_EXPORT Sweeps<float>;
+template class HASHPHASE_INSTANCE_EXPORT Sweeps<double>;
 
 }  // namespace hashphase

@@ -49,7 +49,7 @@ namespace hashphase {
 
 /// Knows how far proxies move in a frame, for Pairs and for queries.
 template <class Scalar>
-class HASHPHASE_BROADPHASE_EXPORT Sweeps {
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Sweeps {
 public:
     /// Keeps a reference to the grid, which must outlive this object (asserted). Hand the object to Pairs.
     explicit Sweeps(Grid<Scalar>& grid);

@@ -17,10 +17,10 @@ public:
     enum class Changes : bool { forbidden, allowed };
 
     explicit QueryScope(const void* owner, Changes changes = Changes::forbidden) noexcept
-        : owner_(owner), outer_(innermost_), changes_(changes) {
-        innermost_ = this;
+        : owner_(owner), outer_(innermost()), changes_(changes) {
+        innermost() = this;
     }
-    ~QueryScope() { innermost_ = outer_; }
+    ~QueryScope() { innermost() = outer_; }
     QueryScope(const QueryScope&) = delete;
     QueryScope& operator=(const QueryScope&) = delete;
 
@@ -36,7 +36,7 @@ public:
 private:
     template <class Predicate>
     [[nodiscard]] static bool any(const void* owner, const Predicate& predicate) noexcept {
-        for (const QueryScope* scope = innermost_; scope != nullptr; scope = scope->outer_) {
+        for (const QueryScope* scope = innermost(); scope != nullptr; scope = scope->outer_) {
             if (scope->owner_ == owner && predicate(*scope)) {
                 return true;
             }
@@ -44,8 +44,15 @@ private:
         return false;
     }
 
+#if HASHPHASE_SHARES_VARIABLES
     HASHPHASE_ONE_FOR_ALL static inline constinit thread_local const QueryScope* innermost_ =
         nullptr;
+    [[nodiscard]] static const QueryScope*& innermost() noexcept {
+        return innermost_;
+    }
+#else
+    [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT static const QueryScope*& innermost() noexcept;
+#endif
 
     const void* owner_;
     const QueryScope* outer_;

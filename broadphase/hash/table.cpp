@@ -7,6 +7,7 @@
 
 #include <broadphase/core/on_failure.hpp>
 #include <broadphase/hash/crowded_buckets.inl>
+#include <broadphase/hash/table_shift.inl>
 
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
@@ -418,7 +419,7 @@ std::string Table<Scalar>::validate(BoxOfEntry filedBox) const {
                          "other: broken.";
 }
 
-template class Table<float>;
-template class Table<double>;
+template class HASHPHASE_INSTANCE_EXPORT Table<float>;
+template class HASHPHASE_INSTANCE_EXPORT Table<double>;
 
 }  // namespace hashphase::detail

@@ -43,7 +43,7 @@ template <class Scalar>
 using Columns = std::array<const Scalar*, 6>;
 
 template <class Scalar>
-class HASHPHASE_BROADPHASE_EXPORT Table {
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Table {
 public:
     using BoxOfEntry = FunctionRef<Aabb<Scalar>(std::uint32_t entry)>;
 

@@ -29,7 +29,7 @@ void PairState<Scalar>::setSweeping(Sweeping<Scalar>* next) {
     }
 }
 
-template struct PairState<float>;
-template struct PairState<double>;
+template struct HASHPHASE_INSTANCE_EXPORT PairState<float>;
+template struct HASHPHASE_INSTANCE_EXPORT PairState<double>;
 
 }  // namespace hashphase::detail

@@ -89,7 +89,7 @@ struct SearchScratch {
 };
 
 template <class Scalar>
-struct HASHPHASE_BROADPHASE_EXPORT PairState {
+struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT PairState {
     using Box = Aabb<Scalar>;
 
     Store<Scalar>& store;

@@ -9,8 +9,8 @@ bool PairList::grow(PairSink& sink, std::size_t count) {
     auto& list = *static_cast<PairList*>(sink.owner);
     const auto size = static_cast<std::size_t>(sink.next - list.data_.get());
     // What a search finds in a frame like the last ones has room.
-    constexpr std::size_t kFewest = 128;
-    const auto capacity = std::max<std::size_t>({2 * list.capacity_, size + count, kFewest});
+    constexpr std::size_t kFewestPairs = 128;
+    const auto capacity = std::max<std::size_t>({2 * list.capacity_, size + count, kFewestPairs});
     auto data = std::make_unique_for_overwrite<IndexPair[]>(capacity);
     std::copy_n(list.data_.get(), size, data.get());
     list.data_ = std::move(data);

@@ -45,6 +45,10 @@ HASHPHASE_BROADPHASE_EXPORT void useInstructionSet(InstructionSet set) noexcept;
 /// Those of the instruction set in use.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT const Kernels<Scalar>& kernels() noexcept;
+template <>
+HASHPHASE_BROADPHASE_EXPORT const Kernels<float>& kernels<float>() noexcept;
+template <>
+HASHPHASE_BROADPHASE_EXPORT const Kernels<double>& kernels<double>() noexcept;
 
 /// A growing array of pairs for kernels to write to. Does not initialise what it grows by, and
 /// keeps its memory.

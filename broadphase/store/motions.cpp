@@ -143,7 +143,7 @@ std::string Motions<Scalar>::validate() const {
                : "Every motion is listed by its proxyIndex, and no other proxyIndex is: broken.";
 }
 
-template struct Motions<float>;
-template struct Motions<double>;
+template struct HASHPHASE_INSTANCE_EXPORT Motions<float>;
+template struct HASHPHASE_INSTANCE_EXPORT Motions<double>;
 
 }  // namespace hashphase::detail

@@ -28,7 +28,7 @@ struct Motion {
 
 /// The motions of a store's proxies.
 template <class Scalar>
-struct HASHPHASE_BROADPHASE_EXPORT Motions {
+struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Motions {
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
     Store<Scalar>& store;

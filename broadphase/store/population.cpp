@@ -189,7 +189,7 @@ void Population<Scalar>::dropLastRecords() {
     }
 }
 
-template struct Population<float>;
-template struct Population<double>;
+template struct HASHPHASE_INSTANCE_EXPORT Population<float>;
+template struct HASHPHASE_INSTANCE_EXPORT Population<double>;
 
 }  // namespace hashphase::detail

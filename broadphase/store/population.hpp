@@ -65,7 +65,7 @@ struct FreeList {
 };
 
 template <class Scalar>
-struct HASHPHASE_BROADPHASE_EXPORT Population {
+struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Population {
     using Box = Aabb<Scalar>;
 
     std::vector<Record<Scalar>> records;  // by index

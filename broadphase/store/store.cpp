@@ -311,7 +311,7 @@ std::string Store<Scalar>::validate() const {
     return alive == proxies.size ? std::string() : "size() is the number of proxies alive: broken.";
 }
 
-template struct Store<float>;
-template struct Store<double>;
+template struct HASHPHASE_INSTANCE_EXPORT Store<float>;
+template struct HASHPHASE_INSTANCE_EXPORT Store<double>;
 
 }  // namespace hashphase::detail

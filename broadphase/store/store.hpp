@@ -54,7 +54,7 @@ struct Frame {
 };
 
 template <class Scalar>
-struct HASHPHASE_BROADPHASE_EXPORT Store {
+struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Store {
     using Box = Aabb<Scalar>;
     using Point = Vector3<Scalar>;
     using Record = detail::Record<Scalar>;

@@ -150,7 +150,7 @@ std::span<const std::uint32_t> Radar<Scalar>::scan(const Grid<Scalar>& grid,
     return counts_;
 }
 
-template class Radar<float>;
-template class Radar<double>;
+template class HASHPHASE_INSTANCE_EXPORT Radar<float>;
+template class HASHPHASE_INSTANCE_EXPORT Radar<double>;
 
 }  // namespace hashphase

@@ -52,7 +52,7 @@ using RadarGroups = FunctionRef<std::uint32_t(ProxyId)>;
 
 /// Counts proxies by cell and group. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class HASHPHASE_AI_EXPORT Radar {
+class HASHPHASE_AI_TEMPLATE_EXPORT Radar {
 public:
     static constexpr std::size_t kMostCounts = std::size_t{1} << 28;
 

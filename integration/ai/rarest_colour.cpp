@@ -143,7 +143,7 @@ std::size_t RarestColour<Scalar>::memoryBytes() const noexcept {
            (counts_.capacity() + rarest_.capacity()) * sizeof(std::uint32_t);
 }
 
-template class RarestColour<float>;
-template class RarestColour<double>;
+template class HASHPHASE_INSTANCE_EXPORT RarestColour<float>;
+template class HASHPHASE_INSTANCE_EXPORT RarestColour<double>;
 
 }  // namespace hashphase

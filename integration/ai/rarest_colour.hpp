@@ -24,7 +24,7 @@ namespace hashphase {
 
 /// Changes colours. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class HASHPHASE_AI_EXPORT RarestColour {
+class HASHPHASE_AI_TEMPLATE_EXPORT RarestColour {
 public:
     /// Lets every agent take the rarest colour: sets colours[ProxyId::index] to the colour, of 0 to
     /// colourCount - 1, that fewest of the other agents within `radius` [m] of its centre have; of equally

@@ -183,10 +183,10 @@ std::span<const ProxyId> Sight<Scalar>::seenBy(std::size_t viewer) const {
     return found_[viewer].seen;
 }
 
-template class SightRegion<float>;
-template class SightRegion<double>;
-template class Sight<float>;
-template class Sight<double>;
+template class HASHPHASE_INSTANCE_EXPORT SightRegion<float>;
+template class HASHPHASE_INSTANCE_EXPORT SightRegion<double>;
+template class HASHPHASE_INSTANCE_EXPORT Sight<float>;
+template class HASHPHASE_INSTANCE_EXPORT Sight<double>;
 template bool hasLineOfSight(const Grid<float>&, const Vector3<float>&, const Vector3<float>&,
                              ProxyFilter, ProxyId, ProxyId);
 template bool hasLineOfSight(const Grid<double>&, const Vector3<double>&, const Vector3<double>&,

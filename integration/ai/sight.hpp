@@ -49,7 +49,7 @@ struct Viewer {
 /// Every proxy whose position is in the viewer's cone, whatever stands in the way. Key: squared distance
 /// [m^2] from the eye. A position at the eye itself is in every cone.
 template <class Scalar>
-class HASHPHASE_AI_EXPORT SightRegion {
+class HASHPHASE_AI_TEMPLATE_EXPORT SightRegion {
 public:
     explicit SightRegion(const Viewer<Scalar>& viewer);
 
@@ -95,7 +95,7 @@ HASHPHASE_AI_EXPORT QueryCost visibleFrom(const Grid<Scalar>& grid, const Viewer
 
 /// visibleFrom() for many viewers. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class HASHPHASE_AI_EXPORT Sight {
+class HASHPHASE_AI_TEMPLATE_EXPORT Sight {
 public:
     /// Looks for all viewers, and forgets those of the last call. Returns the cost of all. The result does
     /// not depend on `parallelFor`. Not from within one of the filters (asserted).

@@ -216,7 +216,7 @@ void Zones<Scalar>::zonesAt(const Vector3<Scalar>& point, std::vector<ZoneId>& f
     }
 }
 
-template class Zones<float>;
-template class Zones<double>;
+template class HASHPHASE_INSTANCE_EXPORT Zones<float>;
+template class HASHPHASE_INSTANCE_EXPORT Zones<double>;
 
 }  // namespace hashphase

@@ -91,7 +91,7 @@ using ZoneChoice = FunctionRef<bool(ZoneId)>;
 
 /// Watches zones. Keeps its memory: a frame like the last one allocates nothing.
 template <class Scalar>
-class HASHPHASE_AI_EXPORT Zones {
+class HASHPHASE_AI_TEMPLATE_EXPORT Zones {
 public:
     // --- Zones -----------------------------------------------------------------------------------
 

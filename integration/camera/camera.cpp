@@ -97,7 +97,7 @@ ScreenRectangle<Scalar> Camera<Scalar>::rectangleBetween(const Pixel& a, const P
 
 template std::string cameraError(const Eigen::Matrix4f&, const Viewport&);
 template std::string cameraError(const Eigen::Matrix4d&, const Viewport&);
-template class Camera<float>;
-template class Camera<double>;
+template class HASHPHASE_INSTANCE_EXPORT Camera<float>;
+template class HASHPHASE_INSTANCE_EXPORT Camera<double>;
 
 }  // namespace hashphase

@@ -62,7 +62,7 @@ template <class Scalar>
 
 /// A camera and the part of the window that it draws to.
 template <class Scalar>
-class HASHPHASE_CAMERA_EXPORT Camera {
+class HASHPHASE_CAMERA_TEMPLATE_EXPORT Camera {
 public:
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 

@@ -57,7 +57,7 @@ template <class Scalar>
 
 /// Returns the view as a region: frustumPlanes() as a ConvexRegion. Cost: some microseconds.
 template <class Scalar>
-[[nodiscard]] HASHPHASE_CAMERA_EXPORT ConvexRegion<Scalar> frustumRegion(
+[[nodiscard]] ConvexRegion<Scalar> frustumRegion(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
     Containment containment = Containment::touching, Touch touch = Touch::exact) {

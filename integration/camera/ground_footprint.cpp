@@ -276,8 +276,8 @@ void GroundFootprint<Scalar>::setHull(const Points& points, const HeightRange<Sc
     }
 }
 
-template class GroundFootprint<float>;
-template class GroundFootprint<double>;
+template class HASHPHASE_INSTANCE_EXPORT GroundFootprint<float>;
+template class HASHPHASE_INSTANCE_EXPORT GroundFootprint<double>;
 
 template std::string footprintError(const Eigen::Matrix4f&, const HeightRange<float>&,
                                     const ScreenRectangle<float>&, double);

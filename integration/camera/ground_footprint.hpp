@@ -44,7 +44,7 @@ struct HeightRange {
 /// A convex polygon on the map, and the prism over it between two heights. Corrects the paper's drag
 /// box and top-down camera, which take two corners and one height.
 template <class Scalar>
-class HASHPHASE_CAMERA_EXPORT GroundFootprint {
+class HASHPHASE_CAMERA_TEMPLATE_EXPORT GroundFootprint {
 public:
     /// A point of the map [m]: (y, z), (x, z) or (x, y), where x, y or z is upwards.
     using Point = Eigen::Matrix<Scalar, 2, 1, Eigen::DontAlign>;

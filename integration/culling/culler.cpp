@@ -127,7 +127,7 @@ Overdraw Culler<Scalar>::overdraw(const Grid<Scalar>& grid) const {
     return {visible, visible - std::min(visible, seen.count())};
 }
 
-template class Culler<float>;
-template class Culler<double>;
+template class HASHPHASE_INSTANCE_EXPORT Culler<float>;
+template class HASHPHASE_INSTANCE_EXPORT Culler<double>;
 
 }  // namespace hashphase

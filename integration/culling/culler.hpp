@@ -44,7 +44,7 @@ struct Overdraw {
 
 /// Finds and keeps the set of proxies that a camera sees.
 template <class Scalar>
-class HASHPHASE_CULLING_EXPORT Culler {
+class HASHPHASE_CULLING_TEMPLATE_EXPORT Culler {
 public:
     using Frustum = ConvexRegion<Scalar>;
     using View [[deprecated("Frustum")]] = Frustum;

@@ -216,7 +216,7 @@ void Observers<Scalar>::addFootprint(SceneFootprint& footprint) const {
     }
 }
 
-template class Observers<float>;
-template class Observers<double>;
+template class HASHPHASE_INSTANCE_EXPORT Observers<float>;
+template class HASHPHASE_INSTANCE_EXPORT Observers<double>;
 
 }  // namespace hashphase

@@ -76,7 +76,7 @@ struct ObservedScene {
 
 /// Runs those effects of a declaration that look at a grid.
 template <class Scalar>
-class HASHPHASE_EFFECTS_EXPORT Observers {
+class HASHPHASE_EFFECTS_TEMPLATE_EXPORT Observers {
 public:
     using Point = Vector3<Scalar>;
     using Scene = ObservedScene<Scalar>;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/effects/simulation.hpp>
 
+#include <integration/effects/simulation_contacts.inl>
 #include <integration/effects/simulation_frame.inl>
+#include <integration/effects/simulation_motion.inl>
 #include <integration/effects/simulation_plan.inl>
 
 #include <broadphase/core/ensure_capacity.hpp>
@@ -370,7 +372,7 @@ QueryCost Simulation<Scalar>::select(const Camera<Scalar>& camera, const Pixel& 
     return observers_.select(observed(), camera, a, b, selected, containment);
 }
 
-template class Simulation<float>;
-template class Simulation<double>;
+template class HASHPHASE_INSTANCE_EXPORT Simulation<float>;
+template class HASHPHASE_INSTANCE_EXPORT Simulation<double>;
 
 }  // namespace hashphase

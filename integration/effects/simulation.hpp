@@ -72,7 +72,7 @@ struct Body {
 
 /// Runs frames of spheres: what is declared, and nothing else.
 template <class Scalar>
-class HASHPHASE_EFFECTS_EXPORT Simulation {
+class HASHPHASE_EFFECTS_TEMPLATE_EXPORT Simulation {
 public:
     using Point = Vector3<Scalar>;
 

@@ -6,6 +6,10 @@ include_guard(GLOBAL)
 include(CheckLinkerFlag)
 include(GNUInstallDirs)
 
+if(MSVC AND MSVC_VERSION LESS 1930)
+    message(FATAL_ERROR "hashphase needs Visual Studio 2022 or newer.")
+endif()
+
 # Before version 1.0 every minor version may change what programs have compiled in; from then on only
 # a major version may (integration/guide/abi.md).
 if(PROJECT_VERSION_MAJOR EQUAL 0)
@@ -28,9 +32,17 @@ function(hashphase_own_target target)
         # A gigabyte before the compiler looks for memory to give back: a tenth of its time.
         target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=1048576)
     endif()
-    if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-        # Contracted multiply-adds would make results depend on the machine that the library is
-        # built for, and a box would no longer be filed where it is looked for.
+    # Contracted multiply-adds would make results depend on the machine that the library is built for, and a
+    # box would no longer be filed where it is looked for. MSVC makes none since Visual Studio 2022.
+    if(MSVC)
+        target_compile_options(
+            ${target} PRIVATE /W4 /permissive- /Zc:__cplusplus /bigobj /utf-8 /fp:precise
+                              $<IF:$<CXX_COMPILER_ID:MSVC>,/Zc:preprocessor,/clang:-ffp-contract=off>)
+        if(BUILD_SHARED_LIBS)
+            # That a class of a DLL has members of the standard library is meant (integration/guide/abi.md).
+            target_compile_options(${target} PUBLIC /wd4251 /wd4275)
+        endif()
+    elseif(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
         target_compile_options(
             ${target}
             PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off

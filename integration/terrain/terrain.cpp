@@ -217,7 +217,7 @@ std::size_t Terrain<Scalar>::memoryBytes() const noexcept {
            triangleOfProxy_.capacity() * sizeof(std::uint32_t);
 }
 
-template class Terrain<float>;
-template class Terrain<double>;
+template class HASHPHASE_INSTANCE_EXPORT Terrain<float>;
+template class HASHPHASE_INSTANCE_EXPORT Terrain<double>;
 
 }  // namespace hashphase

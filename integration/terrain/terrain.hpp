@@ -64,7 +64,7 @@ struct AddedTriangles {
 
 /// Triangles that stand still, and how high the ground is.
 template <class Scalar>
-class HASHPHASE_TERRAIN_EXPORT Terrain {
+class HASHPHASE_TERRAIN_TEMPLATE_EXPORT Terrain {
 public:
     using Point = Vector3<Scalar>;
     using Corners = std::array<Point, 3>;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
 
 // What comes of pairs: who touches, and how it bounces off.
 
@@ -249,20 +250,5 @@ bool Simulation<Scalar>::collide(BodyId first, BodyId second, double restitution
            apart.squaredNorm() <= reach * reach &&
            bounce<false>(a, b, apart, bouncinessOf(restitution), between_);
 }
-
-template void Simulation<float>::gather();
-template bool Simulation<float>::wakeUp(std::size_t);
-template void Simulation<float>::respond();
-template void Simulation<float>::meet();
-template void Simulation<float>::countStoppedSweepers();
-template void Simulation<float>::land();
-template bool Simulation<float>::collide(BodyId, BodyId, double);
-template void Simulation<double>::gather();
-template bool Simulation<double>::wakeUp(std::size_t);
-template void Simulation<double>::respond();
-template void Simulation<double>::meet();
-template void Simulation<double>::countStoppedSweepers();
-template void Simulation<double>::land();
-template bool Simulation<double>::collide(BodyId, BodyId, double);
 
 }  // namespace hashphase

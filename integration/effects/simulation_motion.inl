@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
 
 // How bodies move, and how the grid learns of it, in the same pass where nothing comes between.
 
@@ -144,14 +145,5 @@ template <class Scalar>
 void Simulation<Scalar>::fileAndMeasure() {
     fileBodies<Filing::measured>();
 }
-
-template auto Simulation<float>::movePhase(bool, Filing) -> Phase;
-template void Simulation<float>::note(Filing, float);
-template void Simulation<float>::file();
-template void Simulation<float>::fileAndMeasure();
-template auto Simulation<double>::movePhase(bool, Filing) -> Phase;
-template void Simulation<double>::note(Filing, double);
-template void Simulation<double>::file();
-template void Simulation<double>::fileAndMeasure();
 
 }  // namespace hashphase

@@ -1,24 +1,11 @@
 // SPDX-License-Identifier: Zlib
+#pragma once
+
 #include <broadphase/geometry/origin_shift.hpp>
+#include <broadphase/hash/shift_column.hpp>
 #include <broadphase/hash/table.hpp>
 
 namespace hashphase::detail {
-namespace {
-
-// Returns whether nothing was rounded; what is NaN stays so.
-template <class Scalar>
-bool shiftColumn(Scalar* column, std::size_t count, Scalar shift) {
-    int isExact = 1;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Scalar x = column[i];
-        const Scalar difference = x - shift;
-        isExact &= static_cast<int>(isExactDifference(x, shift, difference) | (x != x));
-        column[i] = difference;
-    }
-    return isExact != 0;
-}
-
-}  // namespace
 
 // Cells are counted from an origin that is shifted along: where neither it nor a coordinate is
 // rounded, a coordinate is as far from it as it was, and in the same cell.
@@ -45,8 +32,5 @@ bool Table<Scalar>::shiftOrigin(const Vector3<Scalar>& shift) {
     }
     return isFiled;
 }
-
-template bool Table<float>::shiftOrigin(const Vector3<float>&);
-template bool Table<double>::shiftOrigin(const Vector3<double>&);
 
 }  // namespace hashphase::detail
