@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+#include "standard.hpp"
+
+#include <Eigen/Geometry>
+#include <btBulletDynamicsCommon.h>
