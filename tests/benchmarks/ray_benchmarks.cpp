@@ -344,7 +344,7 @@ std::vector<Benchmark> rayStepBenchmarks() {
     std::vector<Benchmark> all;
     for (const auto& [name, description, draw, scenes] : lengths) {
         for (const std::string_view scene : scenes) {
-            for (const std::size_t count : {1, 4, 40, 500}) {
+            for (const std::size_t count : {1U, 4U, 40U, 500U}) {
                 for (const Moves moves : {Moves::all, Moves::allTimed}) {
                     const bool isTimed = moves == Moves::allTimed;
                     const std::string rays =

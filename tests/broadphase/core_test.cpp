@@ -38,7 +38,7 @@ TEST(RadixSort, SortsAsComparisonsDo) {
     test::Random random(0x5eed0601);
     std::vector<std::uint64_t> scratch;
     for (const std::uint32_t bound : {1U, 2U, 300U, 2048U, 2049U, 100'000U, 1U << 31, ~0U}) {
-        for (const std::size_t count : {0, 1, 2, 255, 256, 257, 4095, 4096, 50'000}) {
+        for (const std::size_t count : {0U, 1U, 2U, 255U, 256U, 257U, 4095U, 4096U, 50'000U}) {
             std::vector<std::uint64_t> keys;
             for (std::size_t i = 0; i < count; ++i) {
                 keys.push_back(std::uint64_t{random.below(bound)} << 32 | random.below(bound));
@@ -58,7 +58,7 @@ TEST(RadixSort, SortsAsComparisonsDo) {
 TEST(BucketSort, SortsOnThreadsAsOnOne) {
     test::Random random(0x5eed0602);
     for (const std::uint32_t bucketCount : {1U, 31U, 500U, 100'000U}) {
-        for (const std::size_t count : {1, 2048, 2049, 30'000}) {
+        for (const std::size_t count : {1U, 2048U, 2049U, 30'000U}) {
             std::vector<std::uint32_t> wanted(count);
             for (std::uint32_t& bucket : wanted) {
                 bucket = random.below(8) == 0 ? kNoBucket : random.below(bucketCount);

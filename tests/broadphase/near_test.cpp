@@ -155,7 +155,8 @@ TYPED_TEST(WhoIsNear, IsWhomBruteForceFindsAtEveryMomentOfAFrameInEveryScene) {
 // --- From position to position -------------------------------------------------------------------
 
 TYPED_TEST(WhoIsNear, FindsThoseOfBruteForceForAnyNumberOfAgents) {
-    for (const std::size_t count : {0, 1, 2, 3, 15, 16, 17, 63, 64, 65, 66, 130, 1200}) {
+    for (const std::size_t count :
+         {0U, 1U, 2U, 3U, 15U, 16U, 17U, 63U, 64U, 65U, 66U, 130U, 1200U}) {
         SCOPED_TRACE(count);
         this->addPoints(count - this->world_.proxies.size(), 0, 20);
         for (const double radius : {0.0, 1.5, 6.0, 50.0}) {
@@ -249,7 +250,7 @@ TYPED_TEST(WhoIsNear, IsTheSameOnAnyNumberOfThreads) {
     this->search_.take(this->world_.grid, 3);
     const auto expected = this->askAll(serialFor);
     EXPECT_GT(std::get<4>(expected), 100000U);
-    for (const std::size_t threads : {2, 5}) {
+    for (const std::size_t threads : {2U, 5U}) {
         ThreadedFor threadedFor(threads, threads);
         this->search_.take(this->world_.grid, 3, acceptAll, threadedFor);
         EXPECT_EQ(this->askAll(threadedFor), expected);
@@ -336,7 +337,7 @@ TYPED_TEST(WhoIsNear, FromBoxToBoxIsTheSameOnAnyNumberOfThreads) {
     const auto alone = this->neighbours_.find(grid, 2);
     const std::vector<ProxyPair> expected(alone.begin(), alone.end());
     EXPECT_GT(expected.size(), 5000U);
-    for (const std::size_t threads : {2, 5}) {
+    for (const std::size_t threads : {2U, 5U}) {
         ThreadedFor threadedFor(threads, threads);
         ASSERT_TRUE(std::ranges::equal(this->neighbours_.find(grid, 2, threadedFor), expected));
         EXPECT_GT(threadedFor.mostRanges(), 1U);

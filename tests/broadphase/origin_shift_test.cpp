@@ -275,7 +275,7 @@ TYPED_TEST(OriginShift, ThatAddUpBeyondAllNumbersLoseNoBox) {
         {most, most},         {most, most, -most, -most}, {-most, -most, most},
         {most, -most},        {most / 2, most, 1, most},  {least, least, -1},
         {-most / 2, -most, 7}};
-    for (const std::size_t usualCount : {6, 150}) {
+    for (const std::size_t usualCount : {6U, 150U}) {
         for (const double cellSize : {0.0, 1.5}) {
             for (const std::vector<TypeParam>& course : courses) {
                 SCOPED_TRACE(testing::Message() << usualCount << " boxes, cell size " << cellSize

@@ -259,7 +259,7 @@ void addTwoSizes(Population<Scalar>& boxes, std::size_t count) {
 
 TYPED_TEST(PairsOnThreads, AreTheSameOnAnyNumberOfThreads) {
     const auto accepts = [](ProxyId a, ProxyId b) { return (a.index + b.index) % 7 != 0; };
-    for (const std::size_t threadCount : {2, 5}) {
+    for (const std::size_t threadCount : {2U, 5U}) {
         SCOPED_TRACE(testing::Message() << threadCount << " threads");
         ThreadedFor threadedFor(threadCount, 0x5eed0702);
         Population<TypeParam> serial;

@@ -97,7 +97,7 @@ TYPED_TEST(SweptBoxes, AreWhatTheGridsQueriesSee) {
     EXPECT_EQ(world.sweeps.motion(world.ids[0]).box.min(),
               Vector3<TypeParam>(bullets.boxes[0].min() - shift));
     // A few changes wait in a list; so many are filed anew.
-    for (const std::size_t count : {5, 150}) {
+    for (const std::size_t count : {5U, 150U}) {
         for (std::size_t i = 0; i < count; ++i) {
             if (!world.grid.contains(world.ids[i])) {
                 continue;

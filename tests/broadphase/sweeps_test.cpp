@@ -107,7 +107,7 @@ TYPED_TEST(SweptPairs, AreTheSameOnAnyNumberOfThreads) {
         const Bullets<TypeParam> bullets(20'000, 2000, length, random);
         const std::vector<ProxyPair> expected =
             BulletWorld<TypeParam>(bullets, Sweep::automatic).update();
-        for (const std::size_t threads : {2, 5}) {
+        for (const std::size_t threads : {2U, 5U}) {
             ThreadedFor threadedFor(threads, 0x5eed0d04);
             BulletWorld<TypeParam> world(bullets, Sweep::automatic);
             EXPECT_EQ(differences(world.update(threadedFor), expected), "") << length;

@@ -160,8 +160,8 @@ private:
 /// Plays the story with few cubes and among many, where `z` is no frame, one, or as many as it takes to rest.
 inline void expectStory(const std::string& words) {
     const CaughtMessages aboutNan;
-    for (const std::size_t others : {0, 40}) {
-        for (const std::size_t framesOfRest : {0, 1, 12}) {
+    for (const std::size_t others : {0U, 40U}) {
+        for (const std::size_t framesOfRest : {0U, 1U, 12U}) {
             SCOPED_TRACE(testing::Message() << others << " others, z for " << framesOfRest);
             CubeStory(others, framesOfRest).play(words);
         }

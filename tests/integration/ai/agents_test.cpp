@@ -79,7 +79,7 @@ TYPED_TEST(AgentsTest, AreEquallyNearWhereSquaresOverflow) {
     this->grid.update();
     const auto isOneOfThree = [](ProxyId id) { return id.index < 3; };
     std::vector<KeyedProxy<TypeParam>> nearest;
-    for (const std::size_t count : {1, 2, 3}) {
+    for (const std::size_t count : {1U, 2U, 3U}) {
         for (const bool isLimited : {false, true}) {  // so that the first one is too far away
             const TypeParam most = isLimited ? far * TypeParam(2.5) : this->kInfinity;
             findNearest(this->grid, {0, 0, 0}, count, most, nearest, isOneOfThree);

@@ -404,7 +404,7 @@ TYPED_TEST(AgentsInScenes, AreToldTheSameOnAnyNumberOfThreads) {
     }
     Sight<TypeParam> alone;
     Sight<TypeParam> together;
-    for (const std::size_t count : {200, 20, 100}) {
+    for (const std::size_t count : {200U, 20U, 100U}) {
         const auto some = std::span<const Viewer<TypeParam>>(viewers).first(count);
         const QueryCost cost = alone.look(world.grid, some, acceptAll, isBlocker);
         script.playFrame(world);

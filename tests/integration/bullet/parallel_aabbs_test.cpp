@@ -166,7 +166,7 @@ constexpr auto kStepOnly = [](auto& /*scene*/, int /*step*/) {};
 
 template <class World, class Solver = btSequentialImpulseConstraintSolver>
 void expectSameOnThreads() {
-    for (const std::size_t threadCount : {1, 2, 3, 8}) {
+    for (const std::size_t threadCount : {1U, 2U, 3U, 8U}) {
         SCOPED_TRACE(testing::Message() << threadCount << " threads");
         ThreadedFor threads(threadCount, 0x5eed0c02);
         expectSame<World, Solver>(hashOn(&threads), hashOn(nullptr), kStepOnly);

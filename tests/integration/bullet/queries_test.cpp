@@ -201,7 +201,7 @@ TEST(Queries, ByBoxFindWhatBruteForceFinds) {
 }
 
 TEST(Queries, RunOnManyThreadsAtOnceAndGoOnWhenProcessReturnsFalse) {
-    for (const std::size_t number : {0, 9}) {
+    for (const std::size_t number : {0U, 9U}) {
         Playground world(scenes()[number]);
         std::vector<Ray> rays;
         for (int i = 0; i < 200; ++i) {

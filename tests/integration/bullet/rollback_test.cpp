@@ -76,7 +76,7 @@ struct Rollback : Boxes {
 
 TEST(Rollback, BringsTheSameBirthsAndDeathsInTheSameOrderWhateverTheOrderOfTheArray) {
     for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
-        for (const std::size_t eagerEach : {0, 4}) {
+        for (const std::size_t eagerEach : {0U, 4U}) {
             Rollback world(order, true, eagerEach);
             std::vector<PairChanges> first(kFrames);
             for (std::size_t frame = 1; frame < kFrames; ++frame) {

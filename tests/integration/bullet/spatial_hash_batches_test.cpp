@@ -108,7 +108,7 @@ TEST_P(ProxyBatches, DoWhatSingleCallsDo) {
     config.eagerGroups = eagerGroups;
     // Without a callback to be told of each pair, batches leave arrivals in another order.
     const bool isAnyOrder = number < 2 && !hasGhosts;
-    for (const std::size_t sceneNumber : {0, 9, 12}) {  // spread, piles, half-spaces
+    for (const std::size_t sceneNumber : {0U, 9U, 12U}) {  // spread, piles, half-spaces
         const BoxScene<btScalar> scene = allBoxScenes<btScalar>()[sceneNumber];
         Crowd batches(kind, hasGhosts, config, true);
         Crowd singles(kind, hasGhosts, config, false);

@@ -129,7 +129,7 @@ TEST(Worlds, OfBtDbvtBroadphaseMoveAlikeOverOurPairCacheAndBullets) {
     btSphereShape large(3);
     std::vector<std::unique_ptr<DynamicsWorld>> worlds;
     std::vector<btPairCachingGhostObject*> ghosts;
-    for (const std::size_t kind : {1, 3}) {
+    for (const std::size_t kind : {1U, 3U}) {
         std::unique_ptr<btOverlappingPairCache> cache = kCacheKinds[kind].make();
         btOverlappingPairCache* const given = cache.get();
         worlds.push_back(std::make_unique<DynamicsWorld>(std::make_unique<btDbvtBroadphase>(given),

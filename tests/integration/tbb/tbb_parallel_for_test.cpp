@@ -13,7 +13,7 @@ namespace hashphase::test {
 namespace {
 
 TEST(TbbFor, RunsEveryIterationOnce) {
-    for (const std::size_t count : {0, 1, 7, 1000, 100'000}) {
+    for (const std::size_t count : {0U, 1U, 7U, 1000U, 100'000U}) {
         std::vector<std::atomic<int>> times(count);
         tbbFor(count, 16, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {

@@ -42,7 +42,7 @@ double bruteForceQuantile(const std::vector<double>& sample, double share) {
 TEST(PhaseHistory, KnowsTheMedianAndTheSlowestTwentieth) {
     std::mt19937 random(5);
     std::uniform_int_distribution<int> milliseconds(1, 999);
-    for (const std::size_t frames : {2, 3, 5, 20, 21, 100, 240, 241, 1000}) {
+    for (const std::size_t frames : {2U, 3U, 5U, 20U, 21U, 100U, 240U, 241U, 1000U}) {
         PhaseHistory history;
         std::vector<double> all;
         for (std::size_t frame = 0; frame < frames; ++frame) {

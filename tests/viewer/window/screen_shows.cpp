@@ -35,7 +35,7 @@ public:
             for (int column = x; column < x + width; ++column) {
                 const std::size_t pixel = begin + std::size_t{number(12)} * unsigned(row) +
                                           4 * static_cast<std::size_t>(column);
-                for (const std::size_t channel : {2, 1, 0}) {
+                for (const std::size_t channel : {2U, 1U, 0U}) {
                     image.pixels.push_back(byte(pixel + channel));
                 }
                 image.pixels.push_back(255);
