@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Zlib
+# shellcheck shell=bash
+#
+# The newest Bullet and Eigen, and the newest compiler that the packages have (Clang 19) with its own standard
+# library as C++26. The sources of Bullet and Eigen are those in $HASHPHASE_BULLET_SOURCE and
+# $HASHPHASE_EIGEN_SOURCE, or else what their public repositories have, or else Debian's source packages.
+
+# shellcheck source=tests/checks/sources.sh
+source "$root/tests/checks/sources.sh"
+tools+=(git:git clang++-19:clang-19)
+libraries+=(libc++-19-dev libc++abi-19-dev googletest)
+
+# newest_sources <name> <repository> <package> <folder>: prints the folder of the sources; of a repository only
+# the files at the top and the named folder.
+newest_sources() {
+    local variable=HASHPHASE_${1^^}_SOURCE folder=$root/build/sources/newest-$1
+    if [[ ${!variable-} ]]; then
+        folder=${!variable}
+        say "$1 is that of \$$variable"
+    elif [[ -d $folder ]] || {
+        GIT_TERMINAL_PROMPT=0 timeout 300 git clone -q --depth 1 --filter=blob:none --sparse "$2" "$folder.part" &&
+            git -C "$folder.part" sparse-checkout set "$4" && mv "$folder.part" "$folder"
+    } >&2; then
+        say "$1 is that of $2, of $(git -C "$folder" log -1 --format=%cs)"
+    else
+        folder=$root/build/sources/original-$1
+        # As its makers published it: Debian's Bullet redefines commands of CMake.
+        [[ -d $folder ]] || {
+            rm -rf "$folder.part" && cp -r "$(source_package "$3")" "$folder.part" &&
+                dpkg-source --unapply-patches --after-build "$folder.part" && mv "$folder.part" "$folder"
+        } >&2 || return
+        say "$1 is that of Debian's source package, because $2 is out of reach"
+    fi
+    echo "$folder"
+}
+
+# build_newest <name> <cmake option>...: builds the tests of `programs` with the newest Eigen. What the compiler
+# warns of in hashphase is an error.
+build_newest() {
+    build=$root/build/check-bullet-$1
+    say "building build/${build##*/}"
+    cmake -S "$root/tests/checks/bullet" -B "$build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+        -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -DCMAKE_POLICY_VERSION_MINIMUM=3.5 -DEigen3_SOURCES="$eigen" \
+        -DHASHPHASE_ASSERTS=ON -DHASHPHASE_BUILD_TESTS=ON -DHASHPHASE_QUICK_BUILD=ON \
+        -DHASHPHASE_WARNINGS_AS_ERRORS=ON "${@:2}" >"$build.log" || {
+        cat "$build.log" >&2
+        return 1
+    }
+    cmake --build "$build" --target "${programs[@]/%/-tests}" >&2
+}
+
+# install_bullet <name> <cmake option>...: Bullet as a package of its own makers', in double precision.
+install_bullet() {
+    build=$root/build/check-bullet-$1
+    cmake -S "$bullet" -B "$build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release -DINSTALL_LIBS=ON \
+        -DCMAKE_POLICY_VERSION_MINIMUM=3.5 -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DUSE_DOUBLE_PRECISION=ON \
+        -DBUILD_{BULLET2_DEMOS,BULLET3,CPU_DEMOS,EGL,ENET,CLSOCKET,EXTRAS,OPENGL3_DEMOS,UNIT_TESTS}=OFF \
+        -DCMAKE_INSTALL_PREFIX="$build/prefix" "${@:2}" >/dev/null
+    cmake --build "$build" --target install >&2
+}
+
+# In single precision, Bullet is a part of the same build; in double precision, it is installed.
+check_bullet() {
+    local all=("${programs[@]}") threads outcome=0 counts=()
+    bullet=$(newest_sources bullet https://github.com/bulletphysics/bullet3.git bullet src)
+    eigen=$(newest_sources eigen https://gitlab.com/libeigen/eigen.git eigen3 Eigen)
+    for threads in OFF ON; do
+        programs=(bullet)
+        build_newest "float32-threads-$threads" -DBullet_SOURCES="$bullet" \
+            -DBULLET2_MULTITHREADING="$threads" -DHASHPHASE_BUILD_DEMOS=OFF
+        counts+=("$(run_programs "$build/hashphase")") || outcome=1
+        programs=(bullet-float64)
+        install_bullet "installed-threads-$threads" -DBULLET2_MULTITHREADING="$threads"
+        build_newest "float64-threads-$threads" -DCMAKE_PREFIX_PATH="$build/prefix" -DHASHPHASE_BUILD_DEMOS=OFF
+        counts+=("$(run_programs "$build/hashphase")") || outcome=1
+    done
+    programs=("${all[@]}")
+    build_newest clang -DBullet_SOURCES="$bullet" -DBULLET2_MULTITHREADING=ON \
+        -DGTest_SOURCES=/usr/src/googletest -DCMAKE_DISABLE_FIND_PACKAGE_rapidcheck=ON \
+        -DCMAKE_CXX_STANDARD=26 -DCMAKE_C_COMPILER=clang-19 -DCMAKE_CXX_COMPILER=clang++-19 \
+        -DCMAKE_CXX_FLAGS=-stdlib=libc++
+    cmake --build "$build" --target hashphase hashphase-compare >&2
+    counts+=("$(run_programs "$build/hashphase")") || outcome=1
+    printf '%s\n' "${counts[@]}" |
+        awk '{ passed += $1; failed += $3; skipped += $5 }
+            END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped }' >&2
+    return "$outcome"
+}
