@@ -132,7 +132,12 @@ template <class Scalar>
     const Vector3<double> second = side(2);
     const double largest = std::max(first.cwiseAbs().maxCoeff(), second.cwiseAbs().maxCoeff());
     const double scale = std::scalbn(1.0, -std::ilogb(largest));
-    return (scale * second).cross(scale * first).stableNormalized();
+    const Vector3<double> normal = (scale * second).cross(scale * first);
+    // Not by Eigen, each version of which rounds in an order of its own.
+    const double longest = normal.cwiseAbs().maxCoeff();
+    const Vector3<double> unit = normal / longest;
+    const double squared = unit.x() * unit.x() + unit.y() * unit.y() + unit.z() * unit.z();
+    return squared > 0 ? Vector3<double>(normal / (std::sqrt(squared) * longest)) : normal;
 }
 
 /// An edge as seen from a sphere's centre.
