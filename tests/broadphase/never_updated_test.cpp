@@ -148,7 +148,7 @@ TYPED_TEST(NeverUpdated, DoesNotLookAtWhatCameToRestBeforeAndWasRemoved) {
             world.update();
         }
         EXPECT_GT(world.castRays().boxesTested, 0U);
-        for (std::size_t first : {0, 1}) {
+        for (std::size_t first : {0U, 1U}) {
             for (std::size_t i = first; i < ids.size(); i += 2) {
                 world.grid.remove(ids[i]);
             }
