@@ -189,6 +189,12 @@ void Population<Scalar>::dropLastRecords() {
     }
 }
 
+template <class Scalar>
+auto Population<Scalar>::nowhere() noexcept -> const Box& {
+    static const Box box = nanBox<Scalar>();
+    return box;
+}
+
 template struct HASHPHASE_INSTANCE_EXPORT Population<float>;
 template struct HASHPHASE_INSTANCE_EXPORT Population<double>;
 

@@ -138,10 +138,8 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Population {
     [[nodiscard]] const Box& standingBefore(const Record<Scalar>& record) const noexcept {
         return record.changedAt == updateNumber ? record.before : standingBox(record);
     }
-    [[nodiscard]] static const Box& nowhere() noexcept {
-        static const Box box = nanBox<Scalar>();
-        return box;
-    }
+    /// Not inline: MinGW's GCC exports no inline function that has a variable of its own.
+    [[nodiscard]] static const Box& nowhere() noexcept;
 
     // --- Groups ----------------------------------------------------------------------------------
 
