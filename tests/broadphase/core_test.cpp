@@ -380,7 +380,8 @@ TEST(FlatSet, DoesNotClusterRegularKeys) {
             << shift;
     }
     // 1802 and 2263 are bad for plain multiplication by the constants of the hash.
-    for (std::uint64_t m : {1U, 2U, 3U, 7U, 31U, 100U, 256U, 257U, 1802U, 2263U, 65535U, 65536U, 65537U}) {
+    for (std::uint64_t m :
+         {1U, 2U, 3U, 7U, 31U, 100U, 256U, 257U, 1802U, 2263U, 65535U, 65536U, 65537U}) {
         EXPECT_LE(longestProbe([=](std::uint64_t i) { return i * m; }), kLongestProbe) << m;
         EXPECT_LE(longestProbe([=](std::uint64_t i) { return i * m << 32 | (i + 1) * m; }),
                   kLongestProbe)
