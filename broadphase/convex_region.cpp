@@ -99,7 +99,7 @@ Scalar ConvexRegion<Scalar>::key(const Aabb<Scalar>& box) const noexcept {
 }
 
 template <class Scalar>
-detail::FixedList<Eigen::Hyperplane<Scalar, 3>, ConvexRegion<Scalar>::kMostPlanes>
+detail::FixedList<detail::Plane<Scalar>, ConvexRegion<Scalar>::kMostPlanes>
 ConvexRegion<Scalar>::ownPlanes() const {
     detail::FixedList<Plane, kMostPlanes> planes;
     for (std::uint32_t i = 0; i < ownPlaneCount_; ++i) {

@@ -3,11 +3,14 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/fixed_list.hpp>
+#include <broadphase/core/unaligned.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/simd/kernel_types.hpp>
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <ranges>
 #include <span>
 
 namespace hashphase {
@@ -30,7 +33,8 @@ enum class Touch : std::uint8_t { exact, byPlanes };
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT ConvexRegion {
 public:
-    using Plane = Eigen::Hyperplane<Scalar, 3>;
+    /// Of the same size wherever it is compiled. Converts to and from Eigen::Hyperplane<Scalar, 3>.
+    using Plane = detail::Plane<Scalar>;
     static constexpr std::size_t kMostPlanes = detail::kMostOwnPlanes;
 
     /// Takes at most kMostPlanes planes (asserted), which face inwards, with normals of any length. Cost:
@@ -38,6 +42,13 @@ public:
     explicit ConvexRegion(std::span<const Plane> planes,
                           Containment containment = Containment::touching,
                           Touch touch = Touch::exact);
+
+    /// Takes an array or a vector of Eigen::Hyperplane<Scalar, 3>, as above.
+    template <class Planes>
+        requires std::same_as<std::ranges::range_value_t<Planes>, Eigen::Hyperplane<Scalar, 3>>
+    explicit ConvexRegion(const Planes& planes, Containment containment = Containment::touching,
+                          Touch touch = Touch::exact)
+        : ConvexRegion(unaligned(planes), containment, touch) {}
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept;
 
@@ -65,6 +76,21 @@ public:
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:
+    // One more than may be, which is asserted.
+    using PlaneList = detail::FixedList<Plane, kMostPlanes + 1>;
+
+    ConvexRegion(const PlaneList& planes, Containment containment, Touch touch)
+        : ConvexRegion(std::span<const Plane>(planes.begin(), planes.end()), containment, touch) {}
+
+    template <class Planes>
+    [[nodiscard]] static PlaneList unaligned(const Planes& planes) {
+        PlaneList list;
+        for (const auto& plane : planes) {
+            list.push(Plane(plane));
+        }
+        return list;
+    }
+
     [[nodiscard]] bool isSameAs(const ConvexRegion& other) const noexcept;
     [[nodiscard]] detail::FixedList<Plane, kMostPlanes> ownPlanes() const;
     [[nodiscard]] ConvexRegion movedOut(Scalar distance, Touch touch) const;

@@ -43,11 +43,12 @@ Polyhedron::Polyhedron(const Planes& planes) {
 // The volume goes on for ever, both ways, along lines that no plane slopes along. What there is to know
 // of it shows in a slice across these.
 void Polyhedron::findSlice(const Planes& planes) {
-    Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
+    using Matrix3 = Eigen::Matrix<double, 3, 3, Eigen::DontAlign>;
+    Matrix3 normals = Matrix3::Zero();
     for (const Plane& plane : planes) {
         normals += plane.normal() * plane.normal().transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(normals);
+    const Eigen::SelfAdjointEigenSolver<Matrix3> axes(normals);
     Planes slice = planes;
     int lines = 0;
     for (; lines < 3 && !spansSpace_; ++lines) {

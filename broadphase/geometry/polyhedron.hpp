@@ -5,6 +5,7 @@
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/fixed_list.hpp>
+#include <broadphase/core/unaligned.hpp>
 #include <broadphase/simd/kernel_types.hpp>
 
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace hashphase::detail {
 /// The points p with plane.signedDistance(p) >= 0 for each plane.
 class Polyhedron {
 public:
-    using Plane = Eigen::Hyperplane<double, 3>;
+    using Plane = detail::Plane<double>;
     using Planes = FixedList<Plane, kMostVolumePlanes>;
 
     /// The planes are finite, their normals of length 1 or 0, and there are at most 16. Cost:

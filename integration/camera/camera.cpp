@@ -20,32 +20,32 @@ constexpr double kSameWeight = 1e-9;
 }  // namespace
 
 template <class Scalar>
-std::string cameraError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
-                        const Viewport& viewport) {
-    if (std::string error = frustumError(viewProjection); !error.empty()) {
+std::string detail::cameraError(const Matrix4<Scalar>& viewProjection, const Viewport& viewport) {
+    const ScreenEdges<Scalar> wholeScreen{-1, -1, 1, 1};
+    if (std::string error = frustumError(viewProjection, wholeScreen); !error.empty()) {
         return error;
     }
     if (!isGood(viewport)) {
         return "The viewport must be of finite numbers, its width and height above zero.";
     }
-    if (!detail::CameraInverse(viewProjection.template cast<double>()).isValid()) {
+    if (!CameraInverse(viewProjection.template cast<double>()).isValid()) {
         return "The view-projection matrix is singular; it must have an inverse.";
     }
     return {};
 }
 
 template <class Scalar>
-Camera<Scalar>::Camera(const Matrix& viewProjection, DepthRange depthRange,
-                       const Viewport& viewport, DepthOrder depthOrder)
-    : viewProjection_(viewProjection),
-      inverse_(viewProjection.template cast<double>()),
+Camera<Scalar>::Camera(const Unaligned& matrix, DepthRange depthRange, const Viewport& viewport,
+                       DepthOrder depthOrder)
+    : viewProjection_(matrix.viewProjection),
+      inverse_(viewProjection_.template cast<double>()),
       viewport_(viewport),
       depthRange_(depthRange),
       depthOrder_(depthOrder),
       isValid_(inverse_.isValid() && isGood(viewport)) {}
 
 template <class Scalar>
-Eigen::Vector2d Camera<Scalar>::deviceCoordinates(const Pixel& pixel) const {
+detail::Vector2<double> Camera<Scalar>::deviceCoordinates(const Pixel& pixel) const {
     return {2 * (pixel.x() - viewport_.x) / viewport_.width - 1,
             1 - 2 * (pixel.y() - viewport_.y) / viewport_.height};
 }
@@ -58,10 +58,10 @@ RayRegion<Scalar> Camera<Scalar>::rayThrough(const Pixel& pixel, double farthest
     if (!isValid_ || !(farthest > 0)) {
         return nothing;
     }
-    const Eigen::Vector2d device = deviceCoordinates(pixel);
-    Eigen::Vector4d near =
+    const detail::Vector2<double> device = deviceCoordinates(pixel);
+    detail::Vector4<double> near =
         inverse_.at(device.x(), device.y(), depthRange_ == DepthRange::zeroToOne ? 0 : -1);
-    Eigen::Vector4d far = inverse_.at(device.x(), device.y(), 1);
+    detail::Vector4<double> far = inverse_.at(device.x(), device.y(), 1);
     const double difference = far.w() - near.w();
     const bool isParallel =
         std::abs(difference) <= kSameWeight * std::max(std::abs(near.w()), std::abs(far.w()));
@@ -82,21 +82,23 @@ RayRegion<Scalar> Camera<Scalar>::rayThrough(const Pixel& pixel, double farthest
 }
 
 template <class Scalar>
-ScreenRectangle<Scalar> Camera<Scalar>::rectangleBetween(const Pixel& a, const Pixel& b) const {
-    const Eigen::Vector2d first = deviceCoordinates(a);
-    const Eigen::Vector2d second = deviceCoordinates(b);
-    const Eigen::Vector2d low = first.cwiseMin(second);
-    const Eigen::Vector2d high = first.cwiseMax(second);
+detail::ScreenEdges<Scalar> Camera<Scalar>::edgesBetween(const Pixel& a, const Pixel& b) const {
+    const detail::Vector2<double> first = deviceCoordinates(a);
+    const detail::Vector2<double> second = deviceCoordinates(b);
+    const detail::Vector2<double> low = first.cwiseMin(second);
+    const detail::Vector2<double> high = first.cwiseMax(second);
     const bool isSeen = (low.array() <= 1).all() && (high.array() >= -1).all() && !first.hasNaN() &&
                         !second.hasNaN();
     if (!isValid_ || !isSeen) {
-        return {};
+        constexpr Scalar most = std::numeric_limits<Scalar>::max();
+        return {most, most, -most, -most};  // as an empty Eigen::AlignedBox
     }
-    return {low.cwiseMax(-1).cast<Scalar>(), high.cwiseMin(1).cast<Scalar>()};
+    const auto edge = [](double at) { return static_cast<Scalar>(std::clamp(at, -1.0, 1.0)); };
+    return {edge(low.x()), edge(low.y()), edge(high.x()), edge(high.y())};
 }
 
-template std::string cameraError(const Eigen::Matrix4f&, const Viewport&);
-template std::string cameraError(const Eigen::Matrix4d&, const Viewport&);
+template std::string detail::cameraError(const Matrix4<float>&, const Viewport&);
+template std::string detail::cameraError(const Matrix4<double>&, const Viewport&);
 template class HASHPHASE_INSTANCE_EXPORT Camera<float>;
 template class HASHPHASE_INSTANCE_EXPORT Camera<double>;
 

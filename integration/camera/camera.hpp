@@ -28,7 +28,7 @@
 namespace hashphase {
 
 /// A place in the window: x to the right, y downwards [pixels].
-using Pixel = Eigen::Vector2d;
+using Pixel = detail::Vector2<double>;
 
 /// The part of the window that the camera draws to [pixels].
 struct Viewport {
@@ -54,11 +54,21 @@ struct Viewport {
 /// orthographic cameras only; all other matrices show it themselves.
 enum class DepthOrder : std::uint8_t { nearFirst, reversed };
 
+namespace detail {
+
+template <class Scalar>
+[[nodiscard]] HASHPHASE_CAMERA_EXPORT std::string cameraError(const Matrix4<Scalar>& viewProjection,
+                                                              const Viewport& viewport);
+
+}  // namespace detail
+
 /// Says in a sentence why nothing can be seen or picked through the matrix, 4 x 4, in the viewport: not
 /// finite, singular, or a viewport without a size. Empty when something may be seen.
 template <class Scalar>
-[[nodiscard]] HASHPHASE_CAMERA_EXPORT std::string cameraError(
-    const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport);
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string cameraError(
+    const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport) {
+    return detail::cameraError<Scalar>(viewProjection, viewport);
+}
 
 /// A camera and the part of the window that it draws to.
 template <class Scalar>
@@ -68,8 +78,10 @@ public:
 
     /// `viewProjection` is 4 x 4, from world to clip coordinates (frustum.hpp). Bad data makes a camera that
     /// is not valid; nothing is thrown. Cost: inverts the matrix, once.
-    Camera(const Matrix& viewProjection, DepthRange depthRange, const Viewport& viewport,
-           DepthOrder depthOrder = DepthOrder::nearFirst);
+    template <class Derived>
+    Camera(const Eigen::MatrixBase<Derived>& viewProjection, DepthRange depthRange,
+           const Viewport& viewport, DepthOrder depthOrder = DepthOrder::nearFirst)
+        : Camera(Unaligned{viewProjection}, depthRange, viewport, depthOrder) {}
 
     /// False when cameraError() is not empty.
     [[nodiscard]] bool isValid() const noexcept { return isValid_; }
@@ -83,24 +95,42 @@ public:
 
     /// Returns the part of the rectangle between two corners, in any order, that lies in the viewport, in
     /// normalised device coordinates. It may have no area. isEmpty() when no part lies in the viewport.
-    [[nodiscard]] ScreenRectangle<Scalar> rectangleBetween(const Pixel& a, const Pixel& b) const;
+    template <class Rectangle = ScreenRectangle<Scalar>>
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Rectangle rectangleBetween(const Pixel& a,
+                                                                      const Pixel& b) const {
+        using Corner = typename Rectangle::VectorType;
+        const detail::ScreenEdges<Scalar> edges = edgesBetween(a, b);
+        return {Corner(edges[0], edges[1]), Corner(edges[2], edges[3])};
+    }
 
     /// As given.
-    [[nodiscard]] Matrix viewProjection() const noexcept { return viewProjection_; }
+    template <class Result = Matrix>
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Result viewProjection() const noexcept {
+        return viewProjection_;
+    }
     [[nodiscard]] DepthRange depthRange() const noexcept { return depthRange_; }
     [[nodiscard]] const Viewport& viewport() const noexcept { return viewport_; }
 
 private:
-    [[nodiscard]] Eigen::Vector2d deviceCoordinates(const Pixel& pixel) const;
+    struct Unaligned {
+        detail::Matrix4<Scalar> viewProjection;
+    };
+    Camera(const Unaligned& matrix, DepthRange depthRange, const Viewport& viewport,
+           DepthOrder depthOrder);
+    [[nodiscard]] detail::ScreenEdges<Scalar> edgesBetween(const Pixel& a, const Pixel& b) const;
+    [[nodiscard]] detail::Vector2<double> deviceCoordinates(const Pixel& pixel) const;
 
-    // Not aligned: see integration/guide/abi.md.
-    Eigen::Matrix<Scalar, 4, 4, Eigen::DontAlign> viewProjection_;
+    detail::Matrix4<Scalar> viewProjection_;
     detail::CameraInverse inverse_;
     Viewport viewport_;
     DepthRange depthRange_;
     DepthOrder depthOrder_;
     bool isValid_;
 };
+
+template <class Derived>
+Camera(const Eigen::MatrixBase<Derived>&, DepthRange, const Viewport&,
+       DepthOrder = DepthOrder::nearFirst) -> Camera<typename Derived::Scalar>;
 
 extern template class Camera<float>;
 extern template class Camera<double>;

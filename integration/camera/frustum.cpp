@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/camera/frustum.hpp>
 
+#include <cmath>
 #include <limits>
 
-namespace hashphase {
+namespace hashphase::detail {
 
 template <class Scalar>
-std::string frustumError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
-                         const ScreenRectangle<Scalar>& rectangle) {
+std::string frustumError(const Matrix4<Scalar>& viewProjection, const ScreenEdges<Scalar>& edges) {
     if (!viewProjection.allFinite()) {
         return "The view-projection matrix has a number that is NaN or infinite; all 16 must be "
                "finite.";
     }
-    if (!rectangle.min().allFinite() || !rectangle.max().allFinite() || rectangle.isEmpty()) {
+    const auto& [left, bottom, right, top] = edges;
+    const bool isFinite =
+        std::isfinite(left) && std::isfinite(bottom) && std::isfinite(right) && std::isfinite(top);
+    if (!isFinite || left > right || bottom > top) {
         return "The rectangle of the screen must have finite corners, min() not above max().";
     }
     if (viewProjection.row(3).isZero(0)) {
@@ -23,11 +26,11 @@ std::string frustumError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
 }
 
 template <class Scalar>
-std::array<Eigen::Hyperplane<Scalar, 3>, 6> frustumPlanes(
-    const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
-    const ScreenRectangle<Scalar>& rectangle) {
-    std::array<Eigen::Hyperplane<Scalar, 3>, 6> planes;
-    if (!frustumError(viewProjection, rectangle).empty()) {
+std::array<Plane<Scalar>, 6> frustumPlanes(const Matrix4<Scalar>& viewProjection,
+                                           DepthRange depthRange,
+                                           const ScreenEdges<Scalar>& edges) {
+    std::array<Plane<Scalar>, 6> planes;
+    if (!frustumError(viewProjection, edges).empty()) {
         for (auto& plane : planes) {
             plane.coeffs().setConstant(std::numeric_limits<Scalar>::quiet_NaN());
         }
@@ -35,29 +38,29 @@ std::array<Eigen::Hyperplane<Scalar, 3>, 6> frustumPlanes(
     }
     // A clip coordinate is a row times a point; a bound on it is a plane. In double precision, so that
     // small differences of large numbers are rounded once.
-    const auto rows = viewProjection.template cast<double>().eval();
-    const auto set = [&](std::size_t i, const Eigen::RowVector4d& row) {
-        planes[i].coeffs() = row.transpose().template cast<Scalar>();
+    const Matrix4<double> columns = viewProjection.transpose().template cast<double>();
+    const Vector4<double> x = columns.col(0);
+    const Vector4<double> y = columns.col(1);
+    const Vector4<double> z = columns.col(2);
+    const Vector4<double> w = columns.col(3);
+    const auto set = [&](std::size_t i, const Vector4<double>& row) {
+        planes[i].coeffs() = row.template cast<Scalar>();
     };
-    const auto low = rectangle.min().template cast<double>().eval();
-    const auto high = rectangle.max().template cast<double>().eval();
-    set(0, rows.row(0) - low.x() * rows.row(3));
-    set(1, high.x() * rows.row(3) - rows.row(0));
-    set(2, rows.row(1) - low.y() * rows.row(3));
-    set(3, high.y() * rows.row(3) - rows.row(1));
-    set(4, depthRange == DepthRange::zeroToOne ? Eigen::RowVector4d(rows.row(2))
-                                               : Eigen::RowVector4d(rows.row(3) + rows.row(2)));
-    set(5, rows.row(3) - rows.row(2));
+    const auto edge = [&](std::size_t i) { return static_cast<double>(edges[i]); };
+    set(0, x - edge(0) * w);
+    set(1, edge(2) * w - x);
+    set(2, y - edge(1) * w);
+    set(3, edge(3) * w - y);
+    set(4, depthRange == DepthRange::zeroToOne ? z : Vector4<double>(w + z));
+    set(5, w - z);
     return planes;
 }
 
-template std::string frustumError(const Eigen::Matrix4f&, const ScreenRectangle<float>&);
-template std::string frustumError(const Eigen::Matrix4d&, const ScreenRectangle<double>&);
-template std::array<Eigen::Hyperplane<float, 3>, 6> frustumPlanes(const Eigen::Matrix4f&,
-                                                                  DepthRange,
-                                                                  const ScreenRectangle<float>&);
-template std::array<Eigen::Hyperplane<double, 3>, 6> frustumPlanes(const Eigen::Matrix4d&,
-                                                                   DepthRange,
-                                                                   const ScreenRectangle<double>&);
+template std::string frustumError(const Matrix4<float>&, const ScreenEdges<float>&);
+template std::string frustumError(const Matrix4<double>&, const ScreenEdges<double>&);
+template std::array<Plane<float>, 6> frustumPlanes(const Matrix4<float>&, DepthRange,
+                                                   const ScreenEdges<float>&);
+template std::array<Plane<double>, 6> frustumPlanes(const Matrix4<double>&, DepthRange,
+                                                    const ScreenEdges<double>&);
 
-}  // namespace hashphase
+}  // namespace hashphase::detail

@@ -18,7 +18,7 @@
 namespace hashphase {
 namespace {
 
-using Point2 = Eigen::Vector2d;
+using Point2 = detail::Vector2<double>;
 
 // How exact points are, as a share of their coordinates.
 constexpr double kDoubt = 1e-12;
@@ -26,18 +26,18 @@ constexpr double kDoubt = 1e-12;
 /// A corner of a convex polyhedron of which exactly three faces meet in each corner, if need be with
 /// edges of no length.
 struct Corner {
-    Eigen::Vector4d point;    // homogeneous
-    std::uint32_t faces = 0;  // bit i: it lies in face i
+    detail::Vector4<double> point;  // homogeneous
+    std::uint32_t faces = 0;        // bit i: it lies in face i
 };
 using Corners = detail::FixedList<Corner, 32>;  // 14, if it were not for rounding
 
 template <class Scalar>
 Corners viewCorners(const detail::CameraInverse& inverse, DepthRange depthRange,
-                    const ScreenRectangle<Scalar>& rectangle) {
-    Aabb<double> cube(Vector3<double>::Constant(depthRange == DepthRange::zeroToOne ? 0 : -1),
-                      Vector3<double>::Ones());
-    cube.min().template head<2>() = rectangle.min().template cast<double>();
-    cube.max().template head<2>() = rectangle.max().template cast<double>();
+                    const detail::ScreenEdges<Scalar>& edges) {
+    const auto edge = [&](std::size_t i) { return static_cast<double>(edges[i]); };
+    const double nearest = depthRange == DepthRange::zeroToOne ? 0 : -1;
+    const Aabb<double> cube =
+        boxBetween<double>({edge(0), edge(1), nearest}, {edge(2), edge(3), 1});
     Corners corners;
     for (std::uint32_t i = 0; i < 8; ++i) {
         const auto end = [&](int axis) {
@@ -70,7 +70,8 @@ void clip(Corners& corners, std::uint32_t newFace, const DepthOf& depthOf, const
             const std::uint32_t edge = inside.faces & outside.faces;
             if (beyond < 0 && std::popcount(edge) == 2) {
                 const double share = depth / (depth - beyond);
-                Eigen::Vector4d crossing = inside.point + share * (outside.point - inside.point);
+                detail::Vector4<double> crossing =
+                    inside.point + share * (outside.point - inside.point);
                 snap(crossing);
                 hasRoom = clipped.push({crossing, edge | 1U << newFace}) && hasRoom;
             }
@@ -83,7 +84,7 @@ void clip(Corners& corners, std::uint32_t newFace, const DepthOf& depthOf, const
 
 template <class Scalar>
 void clipToHeights(Corners& corners, const HeightRange<Scalar>& heights) {
-    using Point4 = Eigen::Vector4d;
+    using Point4 = detail::Vector4<double>;
     const auto up = static_cast<int>(heights.up);
     const auto low = static_cast<double>(heights.low);
     const auto high = static_cast<double>(heights.high);
@@ -181,25 +182,20 @@ PointList normalsOf(const PointList& corners) {
 template <class Scalar>
 ConvexRegion<Scalar> GroundFootprint<Scalar>::region(Containment containment) const {
     if (isEmpty()) {
-        const typename ConvexRegion<Scalar>::Plane none(Vector3<Scalar>::Zero(),
-                                                        std::numeric_limits<Scalar>::quiet_NaN());
+        const Plane none(Vector3<Scalar>::Zero(), std::numeric_limits<Scalar>::quiet_NaN());
         return ConvexRegion<Scalar>(std::span(&none, 1), containment);
     }
-    detail::FixedList<typename ConvexRegion<Scalar>::Plane, kMostCorners + 2> planes;
-    for (const Plane& plane : planes_) {
-        planes.push(typename ConvexRegion<Scalar>::Plane(plane));
-    }
-    return ConvexRegion<Scalar>(std::span(planes.begin(), planes.end()), containment);
+    return ConvexRegion<Scalar>(std::span(planes_.begin(), planes_.end()), containment);
 }
 
 template <class Scalar>
-std::string footprintError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
-                           const HeightRange<Scalar>& heights,
-                           const ScreenRectangle<Scalar>& rectangle, double farthest) {
-    if (std::string error = frustumError(viewProjection, rectangle); !error.empty()) {
+std::string detail::footprintError(const Matrix4<Scalar>& viewProjection,
+                                   const HeightRange<Scalar>& heights,
+                                   const ScreenEdges<Scalar>& edges, double farthest) {
+    if (std::string error = frustumError(viewProjection, edges); !error.empty()) {
         return error;
     }
-    if (!detail::CameraInverse(viewProjection.template cast<double>()).isValid()) {
+    if (!CameraInverse(viewProjection.template cast<double>()).isValid()) {
         return "The view-projection matrix is singular; it must have an inverse.";
     }
     constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
@@ -213,15 +209,16 @@ std::string footprintError(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
 }
 
 template <class Scalar>
-GroundFootprint<Scalar>::GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
-                                         DepthRange depthRange, const HeightRange<Scalar>& heights,
-                                         const ScreenRectangle<Scalar>& rectangle,
+GroundFootprint<Scalar>::GroundFootprint(const Unaligned& matrix, DepthRange depthRange,
+                                         const HeightRange<Scalar>& heights,
+                                         const detail::ScreenEdges<Scalar>& edges,
                                          double farthest) {
-    if (!footprintError(viewProjection, heights, rectangle, farthest).empty()) {
+    const detail::Matrix4<Scalar>& viewProjection = matrix.viewProjection;
+    if (!detail::footprintError(viewProjection, heights, edges, farthest).empty()) {
         return;
     }
     const detail::CameraInverse inverse(viewProjection.template cast<double>());
-    Corners corners = viewCorners(inverse, depthRange, rectangle);
+    Corners corners = viewCorners<Scalar>(inverse, depthRange, edges);
 
     double nearest = 0;
     for (const Corner& corner : corners) {
@@ -232,7 +229,7 @@ GroundFootprint<Scalar>::GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& view
     }
     // Passes: what is before the farthest distance, and what is between the heights.
     const double least = inverse.weightBehind(nearest, farthest);
-    using Point4 = Eigen::Vector4d;
+    using Point4 = detail::Vector4<double>;
     clip(
         corners, 6, [&](const Point4& point) { return point.w() - least; },
         [&](Point4& point) { point.w() = least; });
@@ -279,9 +276,9 @@ void GroundFootprint<Scalar>::setHull(const Points& points, const HeightRange<Sc
 template class HASHPHASE_INSTANCE_EXPORT GroundFootprint<float>;
 template class HASHPHASE_INSTANCE_EXPORT GroundFootprint<double>;
 
-template std::string footprintError(const Eigen::Matrix4f&, const HeightRange<float>&,
-                                    const ScreenRectangle<float>&, double);
-template std::string footprintError(const Eigen::Matrix4d&, const HeightRange<double>&,
-                                    const ScreenRectangle<double>&, double);
+template std::string detail::footprintError(const Matrix4<float>&, const HeightRange<float>&,
+                                            const ScreenEdges<float>&, double);
+template std::string detail::footprintError(const Matrix4<double>&, const HeightRange<double>&,
+                                            const ScreenEdges<double>&, double);
 
 }  // namespace hashphase

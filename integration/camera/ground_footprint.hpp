@@ -47,17 +47,20 @@ template <class Scalar>
 class HASHPHASE_CAMERA_TEMPLATE_EXPORT GroundFootprint {
 public:
     /// A point of the map [m]: (y, z), (x, z) or (x, y), where x, y or z is upwards.
-    using Point = Eigen::Matrix<Scalar, 2, 1, Eigen::DontAlign>;
+    using Point = detail::Vector2<Scalar>;
 
     /// A polyhedron with nine planes, as of the view between the heights, has at most 14 corners.
     static constexpr std::size_t kMostCorners = 14;
 
     /// The footprint of the view through the matrix, 4 x 4 (frustum.hpp), in a rectangle of the screen,
     /// between these heights, up to `farthest` [m] behind the near plane. Cost: some microseconds.
-    GroundFootprint(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
+    template <class Derived>
+    GroundFootprint(const Eigen::MatrixBase<Derived>& viewProjection, DepthRange depthRange,
                     const HeightRange<Scalar>& heights,
                     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
-                    double farthest = kFarthestView);
+                    double farthest = kFarthestView)
+        : GroundFootprint(Unaligned{viewProjection}, depthRange, heights,
+                          detail::edgesOf<Scalar>(rectangle), farthest) {}
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
@@ -74,9 +77,14 @@ public:
         Containment containment = Containment::touching) const;
 
 private:
-    // Not aligned, as points: see integration/guide/abi.md.
-    using Plane = Eigen::Hyperplane<Scalar, 3, Eigen::DontAlign>;
+    using Plane = detail::Plane<Scalar>;
+    struct Unaligned {
+        detail::Matrix4<Scalar> viewProjection;
+    };
 
+    GroundFootprint(const Unaligned& matrix, DepthRange depthRange,
+                    const HeightRange<Scalar>& heights, const detail::ScreenEdges<Scalar>& edges,
+                    double farthest);
     template <class Points>
     void setHull(const Points& points, const HeightRange<Scalar>& heights);
 
@@ -84,12 +92,28 @@ private:
     detail::FixedList<Plane, kMostCorners + 2> planes_;
 };
 
-/// Says in a sentence why there is no footprint: see Bad data. Empty when there may be one.
+template <class Derived, class Scalar, class... Rest>
+GroundFootprint(const Eigen::MatrixBase<Derived>&, DepthRange, const HeightRange<Scalar>&, Rest...)
+    -> GroundFootprint<Scalar>;
+
+namespace detail {
+
 template <class Scalar>
 [[nodiscard]] HASHPHASE_CAMERA_EXPORT std::string footprintError(
+    const Matrix4<Scalar>& viewProjection, const HeightRange<Scalar>& heights,
+    const ScreenEdges<Scalar>& edges, double farthest);
+
+}  // namespace detail
+
+/// Says in a sentence why there is no footprint: see Bad data. Empty when there may be one.
+template <class Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,
     const ScreenRectangle<Scalar>& rectangle = wholeScreen<Scalar>(),
-    double farthest = kFarthestView);
+    double farthest = kFarthestView) {
+    return detail::footprintError<Scalar>(viewProjection, heights,
+                                          detail::edgesOf<Scalar>(rectangle), farthest);
+}
 
 extern template class GroundFootprint<float>;
 extern template class GroundFootprint<double>;

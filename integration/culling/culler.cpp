@@ -12,8 +12,8 @@ namespace {
 template <class Scalar>
 ConvexRegion<Scalar> nothing() {
     constexpr Scalar nan = std::numeric_limits<Scalar>::quiet_NaN();
-    const Eigen::Hyperplane<Scalar, 3> plane(Vector3<Scalar>::Constant(nan), nan);
-    return ConvexRegion<Scalar>(std::span(&plane, 1));
+    const detail::Plane<Scalar> plane(Vector3<Scalar>::Constant(nan), nan);
+    return ConvexRegion<Scalar>(std::span<const detail::Plane<Scalar>>(&plane, 1));
 }
 
 /// Counts those that are in a culler's set.

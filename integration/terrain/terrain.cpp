@@ -15,10 +15,7 @@ namespace hashphase {
 
 template <class Scalar>
 Terrain<Scalar>::Terrain(Grid<Scalar>& grid, UpAxis up)
-    : grid_(&grid),
-      up_(static_cast<Eigen::Index>(up)),
-      alongX_((up_ + 2) % 3),
-      alongZ_((up_ + 1) % 3) {}
+    : grid_(&grid), up_(static_cast<int>(up)), alongX_((up_ + 2) % 3), alongZ_((up_ + 1) % 3) {}
 
 template <class Scalar>
 Terrain<Scalar>::~Terrain() {

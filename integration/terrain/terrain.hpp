@@ -232,9 +232,9 @@ private:
     }
 
     Grid<Scalar>* grid_;
-    Eigen::Index up_;
-    Eigen::Index alongX_;  // the other two axes
-    Eigen::Index alongZ_;
+    int up_;
+    int alongX_;  // the other two axes
+    int alongZ_;
     Aabb<Scalar> bounds_;  // of all triangles
     Point tilesPerMetre_ = Point::Zero();
     Scalar meshReach_ = 0;           // the largest extent and height of what one add() has brought

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/core/unaligned.hpp>
 #include <integration/camera/export.hpp>
-
-#include <Eigen/Core>
 
 namespace hashphase::detail {
 
@@ -13,7 +12,7 @@ public:
     CameraInverse() = default;
 
     /// Of a view-projection matrix, 4 x 4.
-    explicit CameraInverse(const Eigen::Matrix4d& viewProjection);
+    explicit CameraInverse(const Matrix4<double>& viewProjection);
 
     /// False for a matrix that is singular or not finite.
     [[nodiscard]] bool isValid() const noexcept { return isValid_; }
@@ -21,8 +20,8 @@ public:
     /// The world's homogeneous point with these normalised device coordinates. Its weight, w, is one
     /// by the w of clip space: positive in front of the eye, the smaller the farther away, 0 at
     /// infinity. Points of a segment in device coordinates are those between its homogeneous ends.
-    [[nodiscard]] Eigen::Vector4d at(double x, double y, double z) const {
-        Eigen::Vector4d point = inverse_ * Eigen::Vector4d(x, y, z, 1);
+    [[nodiscard]] Vector4<double> at(double x, double y, double z) const {
+        Vector4<double> point = inverse_ * Vector4<double>(x, y, z, 1);
         point.head<3>() += point.w() * origin_;
         return point;
     }
@@ -35,9 +34,8 @@ public:
 
 private:
     // Of the matrix for a world with its origin near the eye. For one far away, what a weight loses by
-    // cancellation would move points by as large a share of the way from there. (Not aligned: see
-    // integration/guide/abi.md.)
-    Eigen::Matrix<double, 4, 4, Eigen::DontAlign> inverse_ = Eigen::Matrix4d::Zero();
+    // cancellation would move points by as large a share of the way from there.
+    Matrix4<double> inverse_ = Matrix4<double>::Zero();
     Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // [m]
     double weightPerMetre_ = 0;                         // of the w of clip space, along the view
     bool isValid_ = false;
