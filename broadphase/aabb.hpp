@@ -12,6 +12,7 @@
 // Cost    O(1), without an allocation, for everything here
 // Threads values and pure functions; use them from any thread
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/export.hpp>
 
 #include <Eigen/Geometry>
@@ -97,9 +98,27 @@ template <class Scalar>
 [[nodiscard]] inline bool hasNan(const Aabb<Scalar>& box) noexcept {
     const Scalar* low = box.min().data();
     const Scalar* high = box.max().data();
-    return std::isunordered(low[0], high[0]) || std::isunordered(low[1], high[1]) ||
-           std::isunordered(low[2], high[2]);
+    const auto areUnordered = [](const Scalar& a, const Scalar& b) {
+        return HASHPHASE_OVERLOOKS_NAN ? detail::isNan(a) || detail::isNan(b)
+                                       : std::isunordered(a, b);
+    };
+    return areUnordered(low[0], high[0]) || areUnordered(low[1], high[1]) ||
+           areUnordered(low[2], high[2]);
 }
+
+namespace detail {
+
+/// allFinite() and hasNaN() of Eigen's, with -ffast-math as well.
+template <class Scalar>
+[[nodiscard]] inline bool areFinite(const Vector3<Scalar>& point) noexcept {
+    return isFinite(point[0]) && isFinite(point[1]) && isFinite(point[2]);
+}
+template <class Scalar>
+[[nodiscard]] inline bool anyNan(const Vector3<Scalar>& point) noexcept {
+    return isNan(point[0]) || isNan(point[1]) || isNan(point[2]);
+}
+
+}  // namespace detail
 
 }  // namespace hashphase
 

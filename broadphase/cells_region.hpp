@@ -32,7 +32,7 @@ public:
     /// is empty when the ball is: with a negative radius, a NaN, or a centre that is not finite.
     CellsRegion(const Vector3<Scalar>& center, Scalar radius, Scalar cellSize)
         : bounds_(PositionRegion<Scalar>(center, radius).bounds()) {
-        const bool hasCells = cellSize > 0 && std::isfinite(cellSize);
+        const bool hasCells = cellSize > 0 && detail::isFinite(cellSize);
         for (int axis = 0; hasCells && axis < 3; ++axis) {
             Scalar& low = bounds_.min()[axis];
             Scalar& high = bounds_.max()[axis];

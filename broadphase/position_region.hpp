@@ -32,7 +32,7 @@ template <class Scalar>
         const Scalar low = box.min()[axis];
         const Scalar high = box.max()[axis];
         const Scalar middle = low / 2 + high / 2;
-        isSomewhere &= (low <= high) & (std::abs(middle) <= std::numeric_limits<Scalar>::max());
+        isSomewhere &= (low <= high) & detail::isFinite(middle);
         // Half of the smallest numbers is rounded, and might leave the box.
         position[axis] = std::min(std::max(middle, low), high);
     }
@@ -52,7 +52,7 @@ public:
     /// The ball around `center` [m].
     PositionRegion(const Vector3<Scalar>& center, Scalar radius)
         : center_(center), radius_(radius), scale_(detail::unitScale(radius)) {
-        if (!center.allFinite()) {
+        if (!detail::areFinite(center)) {
             radius_ = std::numeric_limits<Scalar>::quiet_NaN();
         }
     }
@@ -80,7 +80,7 @@ public:
     /// The cube around the ball, rounded outward; NaN when the region is empty.
     [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
         using Limits = std::numeric_limits<Scalar>;
-        if (!(radius_ >= 0)) {
+        if (detail::isNan(radius_) || !(radius_ >= 0)) {
             const auto nan = Vector3<Scalar>::Constant(Limits::quiet_NaN());
             return {nan, nan};
         }

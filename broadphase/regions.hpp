@@ -64,8 +64,7 @@ public:
         for (int axis = 0; axis < 3; ++axis) {
             const Scalar before = box.min()[axis] - center_[axis];
             const Scalar behind = center_[axis] - box.max()[axis];
-            // Phrased so that NaN, on either side, leaves the sphere.
-            if (!(before == before && behind == behind)) {
+            if (detail::isNan(before) || detail::isNan(behind)) {
                 return -1;
             }
             const Scalar outside = std::max({before, behind, Scalar(0)}) * scale_;
@@ -78,8 +77,8 @@ public:
     /// The cube around the ball, rounded outward; NaN when the region is empty.
     [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
         using Limits = std::numeric_limits<Scalar>;
-        const bool isEmpty = center_.hasNaN() || !(radius_ >= 0);
-        if (isEmpty || !center_.allFinite()) {
+        const bool isEmpty = detail::anyNan(center_) || detail::isNan(radius_) || !(radius_ >= 0);
+        if (isEmpty || !detail::areFinite(center_)) {
             const auto all =
                 Vector3<Scalar>::Constant(isEmpty ? Limits::quiet_NaN() : Limits::infinity());
             return {-all, all};
@@ -115,7 +114,7 @@ public:
               const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
         : from_(from), direction_(to - from), fatness_(fatness) {
         using Limits = std::numeric_limits<Scalar>;
-        if (!from_.allFinite() || !direction_.allFinite()) {
+        if (!detail::areFinite(from_) || !detail::areFinite(direction_)) {
             direction_.setConstant(Limits::quiet_NaN());
         } else if (direction_.cwiseAbs().maxCoeff() > 1 / Limits::min()) {
             scale_ = Scalar(0.125);
@@ -126,7 +125,7 @@ public:
         last_ = fatness.min().isZero(0) && fatness.max().isZero(0) ? Scalar(1) : kWidened;
         inverse_ = (scale_ * direction_).cwiseInverse();
         for (int axis = 0; axis < 3; ++axis) {
-            if (std::isinf(inverse_[axis])) {
+            if (!detail::isFinite(inverse_[axis]) && !detail::isNan(inverse_[axis])) {
                 // Too short a way to be inverted makes what moves as much thicker.
                 (direction_[axis] > 0 ? fatness_.max() : fatness_.min())[axis] += direction_[axis];
                 direction_[axis] = 0;
@@ -166,7 +165,7 @@ public:
     }
 
     /// True when an end or the length is NaN or infinite: no box has a key.
-    [[nodiscard]] bool isEmpty() const noexcept { return direction_.hasNaN(); }
+    [[nodiscard]] bool isEmpty() const noexcept { return detail::anyNan(direction_); }
     /// Where the ray begins [m].
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
     /// `to` - `from` [m], but 0 along an axis where this is too short to be inverted; NaN when isEmpty().

@@ -18,7 +18,12 @@
 // HASHPHASE_HAS_NEON          instructions, and the compiler their functions
 // HASHPHASE_HAS_SIMD128
 // HASHPHASE_HAS_EXCEPTIONS    1 where this code is compiled with exceptions (without -fno-exceptions)
+// HASHPHASE_STANDARD_LIBRARY  the name of a symbol that says which standard library this is, where programs
+//                             and libraries may be at odds about it (core/same_library.hpp)
+// HASHPHASE_KEPT              of a variable that the compiler keeps though nothing uses it
 // HASHPHASE_HAS_RTTI          1 where it may ask for types when it runs (without -fno-rtti)
+// HASHPHASE_OVERLOOKS_NAN     1 where comparisons may be compiled as if no number were NaN or infinite
+//                             (-ffast-math); isNan() and isFinite() look at the bits then
 
 #include <bit>
 #include <cfloat>
@@ -26,6 +31,8 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <type_traits>
 
 // A float that is calculated with more bits (x87) is another one where it is stored, and a box would no longer
 // be filed where it is looked for.
@@ -37,15 +44,18 @@
 #define HASHPHASE_ALWAYS_INLINE gnu::always_inline
 #define HASHPHASE_NO_INLINE gnu::noinline
 #define HASHPHASE_FLATTEN gnu::flatten
+#define HASHPHASE_KEPT gnu::used
 #elif defined(_MSC_VER)
 #define HASHPHASE_ALWAYS_INLINE msvc::forceinline
 #define HASHPHASE_NO_INLINE msvc::noinline
 #define HASHPHASE_FLATTEN msvc::flatten
+#define HASHPHASE_KEPT maybe_unused
 #include <intrin.h>
 #else
 #define HASHPHASE_ALWAYS_INLINE
 #define HASHPHASE_NO_INLINE
 #define HASHPHASE_FLATTEN
+#define HASHPHASE_KEPT maybe_unused
 #endif
 
 #if __has_cpp_attribute(clang::lifetimebound)
@@ -72,6 +82,18 @@
 #define HASHPHASE_HAS_SIMD128 0
 #endif
 
+#if defined(_LIBCPP_VERSION)
+#define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledFor_libcxx
+#elif defined(_GLIBCXX_DEBUG)
+#define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledWith_GLIBCXX_DEBUG
+#elif defined(_GLIBCXX_USE_CXX11_ABI) && !_GLIBCXX_USE_CXX11_ABI
+#define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledWithout_GLIBCXX_USE_CXX11_ABI
+#elif defined(__GLIBCXX__)
+#define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledFor_libstdcxx
+#else
+#define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledForAnyStandardLibrary
+#endif
+
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
 #define HASHPHASE_HAS_EXCEPTIONS 1
 #else
@@ -81,6 +103,11 @@
 #define HASHPHASE_HAS_RTTI 1
 #else
 #define HASHPHASE_HAS_RTTI 0
+#endif
+#if (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#define HASHPHASE_OVERLOOKS_NAN 1
+#else
+#define HASHPHASE_OVERLOOKS_NAN 0
 #endif
 
 namespace hashphase::detail {
@@ -116,6 +143,27 @@ template <std::floating_point Scalar>
 #else
     return std::fabs(x);
 #endif
+}
+
+/// The bits of |x|: in the order of the numbers, those of infinity after them, those of NaN last.
+template <std::floating_point Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline auto magnitudeBits(const Scalar& x) noexcept {
+    using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
+    return static_cast<Bits>(std::bit_cast<Bits>(x) & (~Bits{0} >> 1));
+}
+template <std::floating_point Scalar>
+inline constexpr auto kInfinityBits =
+    std::bit_cast<std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>>(
+        std::numeric_limits<Scalar>::infinity());
+
+/// std::isnan() and std::isfinite(), with -ffast-math as well.
+template <std::floating_point Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool isNan(const Scalar& x) noexcept {
+    return HASHPHASE_OVERLOOKS_NAN ? magnitudeBits(x) > kInfinityBits<Scalar> : x != x;
+}
+template <std::floating_point Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool isFinite(const Scalar& x) noexcept {
+    return HASHPHASE_OVERLOOKS_NAN ? magnitudeBits(x) < kInfinityBits<Scalar> : std::isfinite(x);
 }
 
 /// Whether dynamic_cast may ask an object, which has virtual functions: its class, and this code, were

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+
+#include <broadphase/core/compiler.hpp>
 #include <cmath>
 #include <limits>
 
@@ -12,7 +14,7 @@ namespace hashphase::detail {
 template <class Scalar>
 [[nodiscard]] Scalar unitScale(Scalar length) noexcept {
     constexpr int most = std::numeric_limits<Scalar>::max_exponent - 2;
-    const bool isOrdinary = std::isfinite(length) && length > 0;
+    const bool isOrdinary = isFinite(length) && length > 0;
     const int exponent = isOrdinary ? std::ilogb(length) : (length > 0 ? most : -most);
     return std::ldexp(Scalar(1), std::clamp(-exponent, -most, most));
 }

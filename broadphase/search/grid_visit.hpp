@@ -271,7 +271,7 @@ struct Grid<Scalar>::CellRegion {
     std::array<std::int64_t, 3> cell;
 
     [[nodiscard]] Scalar key(const Box& box) const {
-        if (!box.min().allFinite() || !box.max().allFinite()) {
+        if (!detail::areFinite(box.min()) || !detail::areFinite(box.max())) {
             return -1;
         }
         const auto low = grid.cellAt(box.min());

@@ -116,6 +116,9 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Store {
     /// Whether the box is not inverted, and within the one by which it is filed.
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] static bool staysWithin(const Box& box,
                                                                    const Box& filed) noexcept {
+        if (HASHPHASE_OVERLOOKS_NAN && hasNan(box)) {
+            return false;
+        }
         for (Eigen::Index axis = 0; axis < 3; ++axis) {
             if (!(filed.min()[axis] <= box.min()[axis] && box.min()[axis] <= box.max()[axis] &&
                   box.max()[axis] <= filed.max()[axis])) {

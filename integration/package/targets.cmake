@@ -33,7 +33,8 @@ function(hashphase_own_target target)
         target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=1048576)
     endif()
     # Contracted multiply-adds would make results depend on the machine that the library is built for, and a
-    # box would no longer be filed where it is looked for. MSVC makes none since Visual Studio 2022.
+    # box would no longer be filed where it is looked for. MSVC makes none since Visual Studio 2022. Nor may
+    # what else is built tell the libraries to leave NaN, or the order of additions, out of account.
     if(MSVC)
         target_compile_options(
             ${target} PRIVATE /W4 /permissive- /Zc:__cplusplus /bigobj /utf-8 /fp:precise
@@ -45,7 +46,8 @@ function(hashphase_own_target target)
     elseif(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
         target_compile_options(
             ${target}
-            PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off
+            PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -fno-fast-math
+                    -fno-finite-math-only -fno-unsafe-math-optimizations -ffp-contract=off
                     $<$<BOOL:${HASHPHASE_WARNINGS_AS_ERRORS}>:-Werror>)
     endif()
 endfunction()
