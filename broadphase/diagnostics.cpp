@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #include <broadphase/diagnostics.hpp>
 
+#include <broadphase/core/same_library.hpp>
+
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 
 namespace hashphase {
+
+const char HASHPHASE_STANDARD_LIBRARY = 0;
+
 namespace {
 
 void printMessage(const char* message) {

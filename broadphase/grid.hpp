@@ -34,6 +34,7 @@
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
 #include <broadphase/core/query_scope.hpp>
+#include <broadphase/core/same_library.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/grid_config.hpp>

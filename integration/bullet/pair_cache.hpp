@@ -33,6 +33,7 @@
 #include <broadphase/core/key_parts.hpp>
 #include <broadphase/core/query_scope.hpp>
 #include <broadphase/core/run_map.hpp>
+#include <broadphase/core/same_library.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <integration/bullet/detail/proxy_ranks.hpp>
 #include <integration/bullet/export.hpp>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
 
 class btBroadphaseInterface;
@@ -14,7 +13,7 @@ class SpatialHashBroadphase;
 namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Lists a SpatialHashBroadphase while it lives, so that one can be told from others without RTTI.
-class HASHPHASE_BULLET_EXPORT LivingBroadphase {
+class LivingBroadphase {
 public:
     explicit LivingBroadphase(SpatialHashBroadphase& broadphase);
     ~LivingBroadphase();
