@@ -10,7 +10,8 @@ cmake_minimum_required(VERSION 3.22)
 string(CONCAT offered
        "(CameraInverse|FewPairs|FirstException::r|Kernels|Motions<|PairState<|Population<|QueryScope|Store<|Table<|"
        "firstContactExactly|instructionSet|isAvailable|kernels|nameOf|parallelForNoexcept|"
-       "raise(InvalidArgument|LengthError)|reportBrokenAssert|reportMessage|"
+       "cameraError|exceptionOf|footprintError|frustum(Error|Planes)|hasRoomFor|"
+       "raise(InvalidArgument|LengthError|OutOfRange)|reportBrokenAssert|reportMessage|"
        "search(Boxes|Volume)|useInstructionSet|f(32|64)::WorldAabbs::update)")
 
 string(REPLACE "," ";" libraries "${LIBRARIES}")

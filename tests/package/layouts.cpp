@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 //
-// Compiled for AVX, for which Eigen aligns some of its matrices more than for any x86-64: what a program
-// and a library share must not know of it.
+// Compiled for AVX-512, for which Eigen aligns some of its matrices more than for any x86-64, and as if it
+// aligned none (tests/checks/flags.sh): what a program and a library share must not know of it.
 
 #include <broadphase/cells_region.hpp>
 #include <broadphase/neighbours.hpp>
@@ -20,11 +20,13 @@
 
 using namespace hashphase;
 
-static_assert(alignof(Eigen::Matrix4f) > 16, "This is to be compiled for AVX.");
+static_assert(alignof(Eigen::Matrix4f) != 16,
+              "This is to be compiled for AVX, or without aligning.");
 
 template <template <class> class... Templates>
-constexpr bool isSameForAll =
-    ((alignof(Templates<float>) <= 16 && alignof(Templates<double>) <= 16) && ...);
+constexpr bool isSameForAll = ((alignof(Templates<float>) <= alignof(void*) &&
+                                alignof(Templates<double>) <= alignof(void*)) &&
+                               ...);
 
 static_assert(isSameForAll<Aabb, BoxRegion, CellsRegion, ConvexRegion, GroundFootprint, MovingBox,
                            MovingBoxRegion, PositionRegion, RayRegion, SphereRegion>);
@@ -32,4 +34,11 @@ static_assert(isSameForAll<Grid, Neighbours, Pairs, RadiusSearch, Sweeps>);
 static_assert(isSameForAll<Culler, Picked, Radar, RadarWindow, RarestColour, Sight, Terrain, Camera,
                            Viewer, SightRegion, Zone, Zones>);
 static_assert(isSameForAll<Body, ObservedScene, Observers, Simulation>);
-static_assert(alignof(SceneEffects) <= 16);
+static_assert(alignof(SceneEffects) <= alignof(void*));
+
+// As numbers side by side, whatever Eigen does.
+static_assert(sizeof(Pixel) == 16 && alignof(Pixel) == 8);
+static_assert(sizeof(ConvexRegion<float>::Plane) == 16 && alignof(ConvexRegion<float>::Plane) == 4);
+static_assert(sizeof(ConvexRegion<double>::Plane) == 32 &&
+              alignof(ConvexRegion<double>::Plane) == 8);
+static_assert(sizeof(detail::CameraInverse) == 128 + 24 + 8 + 8);
