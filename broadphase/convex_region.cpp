@@ -27,12 +27,12 @@ PlaneOfDoubles normalised(const Plane& plane) {
 }  // namespace
 
 template <class Scalar>
-ConvexRegion<Scalar>::ConvexRegion(std::span<const Plane> planes, Containment containment,
-                                   Touch touch) {
+ConvexRegion<Scalar>::ConvexRegion(std::span<const detail::Plane<Scalar>> planes,
+                                   Containment containment, Touch touch) {
     HASHPHASE_ASSERT(planes.size() <= kMostPlanes, "A convex region has at most 16 planes.");
     constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
     detail::Polyhedron::Planes all;
-    for (const Plane& plane : planes.first(std::min(planes.size(), kMostPlanes))) {
+    for (const OwnPlane& plane : planes.first(std::min(planes.size(), kMostPlanes))) {
         const PlaneOfDoubles scaled = normalised(plane);
         const auto offset = static_cast<Scalar>(scaled.offset());
         isEmpty_ = isEmpty_ || !scaled.normal().allFinite() || !(offset > -infinity);
@@ -101,10 +101,10 @@ Scalar ConvexRegion<Scalar>::key(const Aabb<Scalar>& box) const noexcept {
 template <class Scalar>
 detail::FixedList<detail::Plane<Scalar>, ConvexRegion<Scalar>::kMostPlanes>
 ConvexRegion<Scalar>::ownPlanes() const {
-    detail::FixedList<Plane, kMostPlanes> planes;
+    detail::FixedList<OwnPlane, kMostPlanes> planes;
     for (std::uint32_t i = 0; i < ownPlaneCount_; ++i) {
         const Vector3<Scalar> normal(volume_.slope[0][i], volume_.slope[1][i], volume_.slope[2][i]);
-        planes.push(Plane(normal, volume_.offset[i]));
+        planes.push(OwnPlane(normal, volume_.offset[i]));
     }
     return planes;
 }
@@ -128,12 +128,12 @@ bool ConvexRegion<Scalar>::contains(const ConvexRegion& other, Scalar margin) co
         return other.isEmpty_;
     }
     detail::Polyhedron::Planes planes;
-    for (const Plane& plane : other.ownPlanes()) {
+    for (const OwnPlane& plane : other.ownPlanes()) {
         planes.push(normalised(plane));
     }
     const detail::Polyhedron polyhedron(planes);
     const auto own = ownPlanes();
-    return std::all_of(own.begin(), own.end(), [&](const Plane& plane) {
+    return std::all_of(own.begin(), own.end(), [&](const OwnPlane& plane) {
         const bool isEverywhere = plane.normal().isZero(0);  // for all of space is inside of it
         return isEverywhere || polyhedron.isInside(normalised(plane), static_cast<double>(margin));
     });
@@ -141,14 +141,14 @@ bool ConvexRegion<Scalar>::contains(const ConvexRegion& other, Scalar margin) co
 
 template <class Scalar>
 ConvexRegion<Scalar> ConvexRegion<Scalar>::movedOut(Scalar distance, Touch touch) const {
-    std::array<Plane, kMostPlanes> planes;
+    std::array<OwnPlane, kMostPlanes> planes;
     const auto own = ownPlanes();
     for (std::size_t i = 0; i < own.size(); ++i) {
         planes[i] = own[i];
         const Scalar length = own[i].normal().norm();
         planes[i].offset() += length > 0 ? distance * length : Scalar(0);
     }
-    ConvexRegion result(std::span<const Plane>(planes).first(own.size()),
+    ConvexRegion result(std::span<const OwnPlane>(planes).first(own.size()),
                         volume_.isInside ? Containment::inside : Containment::touching, touch);
     result.isEmpty_ = result.isEmpty_ || isEmpty_;
     return result;

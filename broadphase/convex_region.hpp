@@ -33,19 +33,18 @@ enum class Touch : std::uint8_t { exact, byPlanes };
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT ConvexRegion {
 public:
-    /// Of the same size wherever it is compiled. Converts to and from Eigen::Hyperplane<Scalar, 3>.
-    using Plane = detail::Plane<Scalar>;
+    using Plane = Eigen::Hyperplane<Scalar, 3>;
     static constexpr std::size_t kMostPlanes = detail::kMostOwnPlanes;
 
     /// Takes at most kMostPlanes planes (asserted), which face inwards, with normals of any length. Cost:
     /// some microseconds for a frustum; grows with the fourth power of the number of planes.
-    explicit ConvexRegion(std::span<const Plane> planes,
+    explicit ConvexRegion(std::span<const detail::Plane<Scalar>> planes,
                           Containment containment = Containment::touching,
                           Touch touch = Touch::exact);
 
-    /// Takes an array or a vector of Eigen::Hyperplane<Scalar, 3>, as above.
+    /// Takes an array, a vector or a span of Plane, as above.
     template <class Planes>
-        requires std::same_as<std::ranges::range_value_t<Planes>, Eigen::Hyperplane<Scalar, 3>>
+        requires std::same_as<std::ranges::range_value_t<Planes>, Plane>
     explicit ConvexRegion(const Planes& planes, Containment containment = Containment::touching,
                           Touch touch = Touch::exact)
         : ConvexRegion(unaligned(planes), containment, touch) {}
@@ -76,23 +75,26 @@ public:
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:
+    // As the library takes them: unaligned.
+    using OwnPlane = detail::Plane<Scalar>;
     // One more than may be, which is asserted.
-    using PlaneList = detail::FixedList<Plane, kMostPlanes + 1>;
+    using PlaneList = detail::FixedList<OwnPlane, kMostPlanes + 1>;
 
     ConvexRegion(const PlaneList& planes, Containment containment, Touch touch)
-        : ConvexRegion(std::span<const Plane>(planes.begin(), planes.end()), containment, touch) {}
+        : ConvexRegion(std::span<const OwnPlane>(planes.begin(), planes.end()), containment,
+                       touch) {}
 
     template <class Planes>
     [[nodiscard]] static PlaneList unaligned(const Planes& planes) {
         PlaneList list;
         for (const auto& plane : planes) {
-            list.push(Plane(plane));
+            list.push(OwnPlane(plane));
         }
         return list;
     }
 
     [[nodiscard]] bool isSameAs(const ConvexRegion& other) const noexcept;
-    [[nodiscard]] detail::FixedList<Plane, kMostPlanes> ownPlanes() const;
+    [[nodiscard]] detail::FixedList<OwnPlane, kMostPlanes> ownPlanes() const;
     [[nodiscard]] ConvexRegion movedOut(Scalar distance, Touch touch) const;
 
     detail::Volume<Scalar> volume_;

@@ -38,7 +38,6 @@ static_assert(alignof(SceneEffects) <= alignof(void*));
 
 // As numbers side by side, whatever Eigen does.
 static_assert(sizeof(Pixel) == 16 && alignof(Pixel) == 8);
-static_assert(sizeof(ConvexRegion<float>::Plane) == 16 && alignof(ConvexRegion<float>::Plane) == 4);
-static_assert(sizeof(ConvexRegion<double>::Plane) == 32 &&
-              alignof(ConvexRegion<double>::Plane) == 8);
+static_assert(sizeof(detail::Plane<float>) == 16 && alignof(detail::Plane<float>) == 4);
+static_assert(sizeof(detail::Plane<double>) == 32 && alignof(detail::Plane<double>) == 8);
 static_assert(sizeof(detail::CameraInverse) == 128 + 24 + 8 + 8);
