@@ -10,8 +10,8 @@
 //
 // HASHPHASE_ALWAYS_INLINE     inlined wherever it is called, also where nothing else is optimised
 // HASHPHASE_NO_INLINE         never inlined: what is seldom needed does not lengthen what often runs
-// HASHPHASE_FLATTEN           all that the function calls is inlined in it, and what that calls; Clang
-//                             before 22 inlines what it calls itself, and gets -inline-threshold instead
+// HASHPHASE_FLATTEN           all that the function calls is inlined in it, and what that calls (by Clang
+//                             before 22, what it calls itself)
 // HASHPHASE_LIFETIME_BOUND    of a parameter to which the new object keeps a reference: a compiler that
 //                             knows it warns where a temporary would die before the object
 // HASHPHASE_HAS_SSE2          1 where every processor that this code is compiled for has these

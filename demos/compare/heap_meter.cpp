@@ -4,16 +4,14 @@
 #include <cstdlib>
 
 // mallinfo2 came with glibc 2.33; sanitizers put their own allocator in its place.
-#if defined(__GLIBC__) && (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 33) &&                              \
-    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define HASHPHASE_HAS_MALLINFO2 1
+#if HASHPHASE_HAS_MALLINFO2 && !HASHPHASE_IS_SANITIZED
 #include <malloc.h>
 #endif
 
 namespace hashphase::demos {
 
 std::optional<std::int64_t> heapBytes() noexcept {
-#if HASHPHASE_HAS_MALLINFO2
+#if HASHPHASE_HAS_MALLINFO2 && !HASHPHASE_IS_SANITIZED
     const struct mallinfo2 info = mallinfo2();
     return static_cast<std::int64_t>(info.uordblks + info.hblkhd);
 #else

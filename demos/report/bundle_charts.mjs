@@ -35,10 +35,6 @@ writeFileSync(
     output,
     `#include <demos/report/chart_scripts.hpp>
 
-#if defined(__clang__)
-#pragma clang diagnostic ignored "-Woverlength-strings"
-#endif
-
 namespace hashphase::demos {
 
 ChartScripts chartScripts() {

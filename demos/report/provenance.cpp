@@ -12,27 +12,13 @@
 #include <thread>
 
 namespace hashphase::demos {
-namespace {
-
-std::string compilerName() {
-#if defined(__clang__)
-    return "clang " __clang_version__;
-#elif defined(__GNUC__)
-    return "gcc " __VERSION__;
-#else
-    return "unknown";
-#endif
-}
-
-}  // namespace
-
 Provenance gatherProvenance(const std::string& commandLine) {
     Provenance provenance;
     provenance.hashphaseVersion = programVersion();
     provenance.bulletVersion =
         std::to_string(btGetVersion() / 100) + "." + std::to_string(btGetVersion() % 100);
     provenance.precision = btIsDoublePrecision() ? "double" : "single";
-    provenance.compiler = compilerName();
+    provenance.compiler = HASHPHASE_COMPILER;
 #ifdef HASHPHASE_COMPILER_FLAGS
     provenance.compilerFlags = HASHPHASE_COMPILER_FLAGS;
     provenance.programFlags = HASHPHASE_PROGRAM_FLAGS;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#if defined(__SSE2__)
+#include <broadphase/core/compiler.hpp>
+
+#if HASHPHASE_HAS_SSE2
 #include <immintrin.h>
 #endif
 
@@ -11,7 +13,7 @@ namespace hashphase::demos {
 /// does not, as games set their processors.
 class FlushToZero {
 public:
-#if defined(__SSE2__)
+#if HASHPHASE_HAS_SSE2
     explicit FlushToZero(bool flushes) : before_(_mm_getcsr()) {
         _mm_setcsr(flushes ? before_ | kBoth : before_ & ~kBoth);
     }

@@ -7,7 +7,7 @@
 #include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
-#if defined(__GLIBC__)
+#if HASHPHASE_HAS_MALLOC_TRIM
 #include <malloc.h>
 #endif
 
@@ -16,11 +16,8 @@ namespace {
 
 constexpr std::int64_t kMicroseconds = 1'000'000;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if HASHPHASE_IS_SANITIZED
 constexpr bool kCanRunOutOfMemory = false;
-#elif defined(__has_feature)
-constexpr bool kCanRunOutOfMemory =
-    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
 #else
 constexpr bool kCanRunOutOfMemory = true;
 #endif
@@ -48,7 +45,7 @@ bool MemoryLimit::isPossible() noexcept {
 }
 
 MemoryLimit::MemoryLimit(std::uint64_t more) {
-#if defined(__GLIBC__)
+#if HASHPHASE_HAS_MALLOC_TRIM
     malloc_trim(0);
 #endif
     std::uint64_t pages = 0;

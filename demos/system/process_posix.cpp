@@ -6,7 +6,7 @@
 #include <fstream>
 #include <system_error>
 
-#if defined(__linux__)
+#if HASHPHASE_HAS_AFFINITY
 #include <sched.h>
 #endif
 #include <unistd.h>
@@ -34,7 +34,7 @@ int runInstead(const std::filesystem::path& program, std::vector<std::string> ar
 }
 
 void pinToThisCore() noexcept {
-#if defined(__linux__)
+#if HASHPHASE_HAS_AFFINITY
     const int core = sched_getcpu();
     if (core >= 0) {
         cpu_set_t cores;

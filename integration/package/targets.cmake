@@ -48,6 +48,7 @@ function(hashphase_own_target target)
             ${target}
             PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -fno-fast-math
                     -fno-finite-math-only -fno-unsafe-math-optimizations -ffp-contract=off
+                    $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-overlength-strings>
                     $<$<BOOL:${HASHPHASE_WARNINGS_AS_ERRORS}>:-Werror>)
     endif()
 endfunction()
@@ -228,6 +229,8 @@ function(hashphase_enable_sanitizers)
         # libFuzzer follows what runs, and comparisons; only the fuzzers themselves link it.
         add_compile_options(-fsanitize=fuzzer-no-link)
     endif()
+    # Sanitizers have a `new` of their own, and end a program that runs out of memory.
+    add_compile_definitions(HASHPHASE_IS_SANITIZED=1)
     add_compile_options(${flags} -fno-omit-frame-pointer)
     add_link_options(${flags})
 endfunction()

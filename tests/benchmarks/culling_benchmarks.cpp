@@ -4,9 +4,11 @@
 // Everybody marks the visible ones by number.
 
 #include <broadphase/convex_region.hpp>
+#include <broadphase/simd/kernels.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/camera/frustum.hpp>
 #include <integration/culling/culler.hpp>
+#include <tests/benchmarks/culling_loop.hpp>
 #include <tests/benchmarks/workload.hpp>
 #include <tests/support/cameras.hpp>
 
@@ -150,58 +152,6 @@ private:
     std::vector<std::uint8_t> isVisible_;
 };
 
-using Columns = std::array<std::vector<float>, 6>;
-
-// Every box against every plane, a thousand boxes at a time so that they stay in the cache; compilers
-// make vector instructions of it.
-[[gnu::always_inline]] inline void testEveryBox(const Columns& columns, const FrustumPlanes& planes,
-                                                std::vector<std::uint8_t>& isVisible) {
-    constexpr std::size_t atOnce = 1024;
-    std::uint8_t* __restrict marks = isVisible.data();
-    for (std::size_t begin = 0; begin < isVisible.size(); begin += atOnce) {
-        const std::size_t end = std::min(begin + atOnce, isVisible.size());
-        std::fill(marks + begin, marks + end, std::uint8_t{1});
-        for (const auto& plane : planes) {
-            const Vector3<float> normal = plane.normal();
-            const float offset = plane.offset();
-            const auto corner = [&](int axis) {
-                const int column = axis + (normal[axis] > 0 ? 3 : 0);
-                return columns[static_cast<std::size_t>(column)].data();
-            };
-            const float* __restrict x = corner(0);
-            const float* __restrict y = corner(1);
-            const float* __restrict z = corner(2);
-            for (std::size_t i = begin; i < end; ++i) {
-                const float sum = normal[0] * x[i] + normal[1] * y[i] + normal[2] * z[i] + offset;
-                marks[i] &= static_cast<std::uint8_t>(sum >= 0);
-            }
-        }
-    }
-}
-
-[[gnu::noinline]] void testEveryBoxPlainly(const Columns& columns, const FrustumPlanes& planes,
-                                           std::vector<std::uint8_t>& isVisible) {
-    testEveryBox(columns, planes, isVisible);
-}
-
-#if defined(__x86_64__)
-[[gnu::noinline, gnu::target("avx512f,avx512vl,avx512bw,avx512dq,prefer-vector-width=512")]] void
-testEveryBoxWide(const Columns& columns, const FrustumPlanes& planes,
-                 std::vector<std::uint8_t>& isVisible) {
-    testEveryBox(columns, planes, isVisible);
-}
-
-bool hasWideInstructions() {
-    return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
-           __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0;
-}
-#else
-constexpr auto testEveryBoxWide = testEveryBoxPlainly;
-bool hasWideInstructions() {
-    return false;
-}
-#endif
-
 /// A loop over the boxes, by column and by object, compiled for any x86-64 or for AVX-512.
 class LoopCulling final : public CullingRunner {
 public:
@@ -224,7 +174,15 @@ public:
     }
 
     void look(const FrustumPlanes& planes) override {
-        (isWide_ ? testEveryBoxWide : testEveryBoxPlainly)(columns_, planes, isVisible_);
+        std::array<CullingPlane, 6> all{};
+        for (std::size_t i = 0; i < planes.size(); ++i) {
+            const auto& normal = planes[i].normal();
+            all[i] = {{normal[0], normal[1], normal[2]}, planes[i].offset()};
+        }
+        std::array<const float*, 6> columns{};
+        std::ranges::transform(columns_, columns.begin(), [](const auto& c) { return c.data(); });
+        (isWide_ ? cullByWideLoop : cullByLoop)(columns.data(), isVisible_.size(), all.data(),
+                                                isVisible_.data());
     }
 
     void listVisible(std::vector<Answer>& visible) const override {
@@ -233,7 +191,7 @@ public:
 
 private:
     bool isWide_;
-    Columns columns_;
+    std::array<std::vector<float>, 6> columns_;
     std::vector<std::uint8_t> isVisible_;
 };
 
@@ -244,7 +202,7 @@ std::vector<ContestantKind> cullingKinds() {
     bullet.title = "btDbvt::collideKDOP";
     std::vector<ContestantKind> kinds{
         own, bullet, {.name = "loop", .title = "every box", .package = "none"}};
-    if (hasWideInstructions()) {
+    if (detail::isAvailable(detail::InstructionSet::avx512)) {
         kinds.push_back({.name = "loop-avx512", .title = "every box", .package = "none"});
     }
     return kinds;

@@ -16,13 +16,17 @@
 # other folders are its own.
 # A few headers have moved, and forward from where they were to where they are: they include that one header,
 # and nobody here includes them.
-# demos/ and tests/ may include everything, and nobody else includes them. Names every breach by
-# file, line and rule.
+# demos/ and tests/ may include everything, and nobody else includes them.
+#
+# Only a few files ask which compiler, processor or system they are compiled for: checked on every #if below
+# broadphase/, integration/, demos/ and tests/.
+#
+# Names every breach by file, line and rule.
 
 cmake_minimum_required(VERSION 3.22)
 
 set(standard "[a-z_0-9]+")
-set(simd "([a-z]+intrin|arm_neon)\\.h")
+set(simd "([a-z]*intrin|arm_neon|wasm_simd128)\\.h")
 set(eigen "Eigen/[A-Za-z]+")
 set(offered "broadphase/((core|geometry)/)?[^/]+")
 set(moved broadphase/crowd.hpp broadphase/frustum.hpp broadphase/ground_footprint.hpp
@@ -41,6 +45,9 @@ macro(get_rule file)
         set(allowed "(broadphase/.+|${simd}|${eigen}|${standard})")
         set(rule "broadphase/simd/ includes only broadphase/, SIMD intrinsics, Eigen and the \
 standard library")
+    elseif("${file}" STREQUAL "broadphase/core/compiler.hpp")
+        set(allowed "(intrin\\.h|${standard})")
+        set(rule "the words of compilers include only intrin.h and the standard library")
     elseif("${file}" MATCHES "^broadphase/")
         set(allowed "(broadphase/.+|${eigen}|${standard})")
         set(rule "broadphase/ includes only itself, Eigen and the standard library")
@@ -110,10 +117,35 @@ foreach(file IN LISTS files)
     endforeach()
 endforeach()
 
+# The words that tell a compiler, a library, a processor or a system, and who may ask for them.
+string(CONCAT platforms "__(GNUC|clang|GLIBC|GLIBCXX|LIBCPP|MINGW|SSE|AVX|SANITIZE|wasm|EMSCRIPTEN|linux|unix|APPLE|"
+       "ANDROID|x86_64|i386|aarch64|arm|ARM|cpp_|has_|STDC_IEC)|_(MSC_|MSVC|WIN32|M_[A-Z]|LIBCPP|CPPUNWIND|CPPRTTI)")
+string(CONCAT knowing "^(broadphase/core/compiler\\.hpp|broadphase/export\\.hpp|broadphase/simd/dispatch\\.cpp|"
+       "demos/try/.*)$")
+file(GLOB_RECURSE others RELATIVE ${ROOT} ${ROOT}/demos/*.[hci]* ${ROOT}/tests/*.[hci]*)
+set(conditionCount 0)
+foreach(file IN LISTS files others)
+    if(NOT file MATCHES "\\.(h|hpp|inl|c|cpp|in)$" OR file MATCHES "${knowing}")
+        continue()
+    endif()
+    file(STRINGS ${ROOT}/${file} conditions REGEX "^[ \t]*#[ \t]*(if|elif)")
+    foreach(condition IN LISTS conditions)
+        math(EXPR conditionCount "${conditionCount} + 1")
+        if(condition MATCHES "${platforms}")
+            message(NOTICE "${file}: ${condition}: compilers, processors and systems are told apart in "
+                           "broadphase/core/compiler.hpp, or by CMake's choice of a source.")
+            math(EXPR breachCount "${breachCount} + 1")
+        endif()
+    endforeach()
+endforeach()
+if(conditionCount EQUAL 0)
+    message(FATAL_ERROR "No #if was found below ${ROOT}: nothing was checked.")
+endif()
+
 list(LENGTH files fileCount)
 if(includeCount EQUAL 0)
     message(FATAL_ERROR "No #include was found below ${ROOT}: nothing was checked.")
 elseif(breachCount GREATER 0)
-    message(FATAL_ERROR "${breachCount} of ${includeCount} includes break the layering.")
+    message(FATAL_ERROR "${breachCount} of ${includeCount} includes or conditions break the layering.")
 endif()
 message(STATUS "${includeCount} includes in ${fileCount} files keep to the layering.")

@@ -20,6 +20,7 @@ function(make_good_tree)
     file(WRITE ${SCRATCH}/broadphase/grid.hpp
          "#include <Eigen/Geometry>\n#include <vector>\n"
          "  # include <broadphase/hash/table.hpp>// x\n")
+    file(WRITE ${SCRATCH}/broadphase/core/compiler.hpp "#if defined(_MSC_VER)\n#include <intrin.h>\n#endif\n")
     file(WRITE ${SCRATCH}/broadphase/simd/kernel.hpp "#include <emmintrin.h>\n")
     file(WRITE ${SCRATCH}/integration/bullet/broadphase.hpp
          "#include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>\n"
@@ -38,7 +39,7 @@ function(make_good_tree)
     file(WRITE ${SCRATCH}/integration/effects/plan.cpp
          "#include <integration/picking/pick.hpp>\n#include <cstdint>\n")
     file(WRITE ${SCRATCH}/demos/main.cpp "#include \"scene.hpp\"\n#include <CLI/CLI.hpp>\n")
-    file(WRITE ${SCRATCH}/tests/grid.cpp "#include <gtest/gtest.h>\n#include <demos/scene.hpp>\n")
+    file(WRITE ${SCRATCH}/tests/grid.cpp "#include <gtest/gtest.h>\n#include <demos/scene.hpp>\n#if HASHPHASE_SHARED\n#endif\n")
 endfunction()
 
 # One breach: `text` in `file` must be refused at `line` with a rule that matches `rule`.
@@ -50,6 +51,16 @@ function(expect_breach file line rule text)
         message(FATAL_ERROR "Not noticed in ${file}: ${text}")
     elseif(NOT output MATCHES "${file}:${line}: #include [^\n]*: [^\n]*${rule}")
         message(FATAL_ERROR "${file}:${line} and \"${rule}\" are not named for ${text}:\n${output}")
+    endif()
+endfunction()
+
+# A condition in a file that is to know no platform.
+function(expect_condition_refused file condition)
+    make_good_tree()
+    file(APPEND ${SCRATCH}/${file} "${condition}\n#endif\n")
+    run_check()
+    if(status EQUAL 0 OR NOT output MATCHES "${file}: [^\n]*told apart in broadphase/core/compiler")
+        message(FATAL_ERROR "Not noticed in ${file}: ${condition}\n${output}")
     endif()
 endfunction()
 
@@ -97,6 +108,11 @@ expect_breach(integration/effects/plan.cpp 3 "integration/effects/ includes only
 expect_breach(integration/package/consumer.cpp 1 "integration/package/ includes only what users"
               "#include <demos/scene.hpp>\n")
 expect_breach(integration/stray.hpp 1 "only a folder for each client" "#include <vector>\n")
+
+expect_condition_refused(broadphase/grid.hpp "#if defined(__GNUC__)")
+expect_condition_refused(integration/ai/sight.cpp "  #  ifdef _WIN32")
+expect_condition_refused(demos/main.cpp "#elif !defined(__x86_64__)")
+expect_condition_refused(tests/grid.cpp "#if __has_feature(address_sanitizer)")
 
 file(REMOVE_RECURSE ${SCRATCH})
 file(MAKE_DIRECTORY ${SCRATCH}/broadphase)

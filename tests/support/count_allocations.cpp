@@ -89,7 +89,7 @@ static_assert(alignof(std::max_align_t) <= kUsualAlignment);
 
 }  // namespace hashphase::test
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(HASHPHASE_KEEPS_NEW)
+#if !HASHPHASE_IS_SANITIZED && !HASHPHASE_KEEPS_NEW
 
 using hashphase::test::kUsualAlignment;
 

@@ -10,7 +10,7 @@
 namespace hashphase::test {
 
 // Sanitizers have a `new` of their own, which finds faults that another one would hide; DLLs, too.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(HASHPHASE_KEEPS_NEW)
+#if HASHPHASE_IS_SANITIZED || HASHPHASE_KEEPS_NEW
 inline constexpr bool kCountsAllocations = false;
 #else
 inline constexpr bool kCountsAllocations = true;

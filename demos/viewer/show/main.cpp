@@ -5,13 +5,13 @@
 
 #include <demos/viewer/show/wander.hpp>
 
-#ifdef __GLIBC__
+#if HASHPHASE_HAS_MALLOPT
 #include <malloc.h>
 #endif
 
 int main(int argc, char** argv) {
     using namespace hashphase::demos;
-#ifdef __GLIBC__
+#if HASHPHASE_HAS_MALLOPT
     // Mesa's software renderer frees a frame's memory at the top of the heap. Handed back to the kernel and
     // faulted in again, it would take a third of the main thread's time.
     mallopt(M_TRIM_THRESHOLD, 256 << 20);

@@ -22,11 +22,6 @@
 #include <array>
 #include <type_traits>
 
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
-#endif
-
 namespace hashphase::test {
 namespace {
 
@@ -70,7 +65,3 @@ TEST(OldNames, ReadTheSearchOfARarestColour) {
 
 }  // namespace
 }  // namespace hashphase::test
-
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
