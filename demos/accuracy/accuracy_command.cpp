@@ -8,6 +8,7 @@
 #include <demos/console/result_file.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/process.hpp>
 
 #include <CLI/CLI.hpp>
 

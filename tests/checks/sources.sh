@@ -84,7 +84,7 @@ run_programs() {
     cat "${built[@]/%/.0.log}" "${built[@]/%/.1.log}" | awk '
         /^\[  PASSED  \]/ { passed += $4 }
         /^\[  SKIPPED \] [0-9]+ test/ { skipped += $4 }
-        /^\[  FAILED  \] [0-9]+ test/ { failed += $4 }
+        /^\[  FAILED  \] .* \([0-9]+ ms\)$/ { ++failed }
         END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped; exit passed == 0 }' ||
         outcome=1
     return "$outcome"
