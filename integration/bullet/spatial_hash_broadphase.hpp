@@ -135,7 +135,8 @@ struct ClosestRay {
 };
 
 /// A btBroadphaseInterface over a Grid, in place of btDbvtBroadphase.
-class HASHPHASE_BULLET_EXPORT SpatialHashBroadphase : public btBroadphaseInterface {
+class HASHPHASE_BULLET_EXPORT SpatialHashBroadphase : public btBroadphaseInterface,
+                                                      private detail::LivingBroadphase {
 public:
     /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config).
     explicit SpatialHashBroadphase(const SpatialHashConfig& config = {});
@@ -418,7 +419,7 @@ private:
         return static_cast<Proxy*>(proxy);
     }
 
-    detail::LivingBroadphase living_{*this};
+    friend class detail::LivingBroadphase;
     SpatialHashConfig config_;
     Grid<btScalar> grid_;
     std::unique_ptr<Sweeps<btScalar>> sweeps_;  // if the configuration asks for it
@@ -436,9 +437,8 @@ private:
     detail::CacheWatch watch_;             // of the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
     detail::GroupKinds groupKinds_;
-    detail::GroupKinds::Set changedKinds_ =
-        0;                             // of what was created or moved since the last update
-    std::vector<std::uint64_t> seen_;  // slots whose groups are known since then; or empty
+    detail::GroupKinds::Set changedKinds_ = 0;  // of what has changed since the last update
+    std::vector<std::uint64_t> seen_;           // slots whose groups are known since then; or empty
     std::size_t seenCount_ = 0;
     std::unique_ptr<detail::FlatSet> ghosts_;  // their slots; made with the first
     detail::PeakWatch peaks_;                  // of the cache

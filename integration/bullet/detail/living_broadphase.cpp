@@ -3,41 +3,40 @@
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
-#include <algorithm>
 #include <mutex>
-#include <vector>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
-struct Living {
-    std::mutex mutex;
-    std::vector<SpatialHashBroadphase*> broadphases;
-};
-
-// Made with the first broadphase, and so there until the last one has gone.
-Living& living() {
-    static Living all;
-    return all;
-}
+constinit std::mutex mutex;
+constinit LivingBroadphase* first = nullptr;
 
 }  // namespace
 
-LivingBroadphase::LivingBroadphase(SpatialHashBroadphase& broadphase) : broadphase_(&broadphase) {
-    const std::lock_guard lock(living().mutex);
-    living().broadphases.push_back(broadphase_);
+LivingBroadphase::LivingBroadphase() noexcept {
+    const std::lock_guard lock(mutex);
+    next_ = first;
+    first = this;
 }
 
 LivingBroadphase::~LivingBroadphase() {
-    const std::lock_guard lock(living().mutex);
-    std::erase(living().broadphases, broadphase_);
+    const std::lock_guard lock(mutex);
+    LivingBroadphase** link = &first;
+    while (*link != this) {
+        link = &(*link)->next_;
+    }
+    *link = next_;
 }
 
 SpatialHashBroadphase* LivingBroadphase::find(const btBroadphaseInterface* broadphase) noexcept {
-    const std::lock_guard lock(living().mutex);
-    const auto& all = living().broadphases;
-    const auto found = std::find(all.begin(), all.end(), broadphase);
-    return found != all.end() ? *found : nullptr;
+    const std::lock_guard lock(mutex);
+    for (LivingBroadphase* living = first; living != nullptr; living = living->next_) {
+        auto* const found = static_cast<SpatialHashBroadphase*>(living);
+        if (found == broadphase) {
+            return found;
+        }
+    }
+    return nullptr;
 }
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -12,10 +12,11 @@ class SpatialHashBroadphase;
 
 namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Lists a SpatialHashBroadphase while it lives, so that one can be told from others without RTTI.
+/// Lists the SpatialHashBroadphase that derives from it while it lives, so that one can be told from others
+/// without RTTI.
 class LivingBroadphase {
 public:
-    explicit LivingBroadphase(SpatialHashBroadphase& broadphase);
+    LivingBroadphase() noexcept;
     ~LivingBroadphase();
     LivingBroadphase(const LivingBroadphase&) = delete;
     LivingBroadphase& operator=(const LivingBroadphase&) = delete;
@@ -26,7 +27,7 @@ public:
         const btBroadphaseInterface* broadphase) noexcept;
 
 private:
-    SpatialHashBroadphase* broadphase_;
+    LivingBroadphase* next_ = nullptr;
 };
 
 }  // namespace detail::inline HASHPHASE_BULLET_NAMESPACE
