@@ -346,7 +346,7 @@ private:
 
     [[nodiscard]] std::size_t home(std::uint32_t keyHash) const noexcept {
         // One group: by 32, which an std::size_t may not have.
-        return static_cast<std::size_t>(std::uint64_t{keyHash} >> shift_);
+        return static_cast<std::uint32_t>(std::uint64_t{keyHash} >> shift_);
     }
     [[nodiscard]] std::size_t next(std::size_t group) const noexcept {
         return (group + 1) & (groups_.size() - 1);

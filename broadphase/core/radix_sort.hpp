@@ -26,7 +26,7 @@ struct ClosedUpKeys {
     [[nodiscard]] std::size_t digit(std::uint64_t key, unsigned shift,
                                     std::size_t digits) const noexcept {
         const std::uint64_t closedUp = (key >> 32) << bits | (key & 0xffffffff);
-        return static_cast<std::size_t>(closedUp >> shift) & (digits - 1);
+        return static_cast<std::uint32_t>(closedUp >> shift) & (digits - 1);
     }
 };
 

@@ -24,6 +24,8 @@
 #include <span>
 #include <string>
 
+#include <broadphase/core/hide_macros.hpp>
+
 namespace hashphase {
 
 /// The depths of clip space: z from -w to w (minusOneToOne: OpenGL), or from 0 to w (zeroToOne: Direct3D,
@@ -112,3 +114,5 @@ template <class Scalar>
 }
 
 }  // namespace hashphase
+
+#include <broadphase/core/restore_macros.hpp>

@@ -14,6 +14,7 @@ set(numbers "(float|double), ")
 set(aligned "(Matrix|Array)<${numbers}(1, [24]|[24], [124]), [01],|Hyperplane<${numbers}3, 0>|AlignedBox<double, 2>")
 
 string(REPLACE "," ";" objects "${OBJECTS}")
+list(FILTER objects EXCLUDE REGEX "cmake_pch")  # precompiled headers
 set(kernelCount 0)
 foreach(object IN LISTS objects)
     execute_process(COMMAND ${NM} -C --defined-only ${object} OUTPUT_VARIABLE output
