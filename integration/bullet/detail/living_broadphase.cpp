@@ -8,20 +8,25 @@
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
-constinit std::mutex mutex;
-constinit LivingBroadphase* first = nullptr;
+constinit LivingBroadphase* newestLiving = nullptr;
+
+// Made with the first broadphase, and so there until the last one has gone.
+std::mutex& livingMutex() noexcept {
+    static std::mutex mutex;
+    return mutex;
+}
 
 }  // namespace
 
 LivingBroadphase::LivingBroadphase() noexcept {
-    const std::lock_guard lock(mutex);
-    next_ = first;
-    first = this;
+    const std::lock_guard lock(livingMutex());
+    next_ = newestLiving;
+    newestLiving = this;
 }
 
 LivingBroadphase::~LivingBroadphase() {
-    const std::lock_guard lock(mutex);
-    LivingBroadphase** link = &first;
+    const std::lock_guard lock(livingMutex());
+    LivingBroadphase** link = &newestLiving;
     while (*link != this) {
         link = &(*link)->next_;
     }
@@ -29,8 +34,8 @@ LivingBroadphase::~LivingBroadphase() {
 }
 
 SpatialHashBroadphase* LivingBroadphase::find(const btBroadphaseInterface* broadphase) noexcept {
-    const std::lock_guard lock(mutex);
-    for (LivingBroadphase* living = first; living != nullptr; living = living->next_) {
+    const std::lock_guard lock(livingMutex());
+    for (LivingBroadphase* living = newestLiving; living != nullptr; living = living->next_) {
         auto* const found = static_cast<SpatialHashBroadphase*>(living);
         if (found == broadphase) {
             return found;
