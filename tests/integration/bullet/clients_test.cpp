@@ -197,11 +197,13 @@ TEST(AllClientsTest, AskAboutThirtyThousandBodiesInAFrameThatFilesThemOnce) {
     RoamingBodies world(30000);
     AllClients<Scalar> clients = world.clients();
     AllClients<Scalar> others = world.clients();
+    world.step();
+    // The size of its cells, by which estimates go, follows from the same boxes.
     Grid<Scalar> twin;
     for (int i = 0; i < world.bodyCount(); ++i) {
         ASSERT_EQ(twin.add(world.grid().box(world.idOf(i))), world.idOf(i));
     }
-    world.step();
+    twin.update();
     for (int frame = 0; frame < 3; ++frame) {
         const std::uint64_t filings = world.grid().filingCount();
         world.step();
@@ -214,6 +216,7 @@ TEST(AllClientsTest, AskAboutThirtyThousandBodiesInAFrameThatFilesThemOnce) {
         }
         twin.update();
         others.ask(twin);
+        ASSERT_EQ(world.grid().cellSize(), twin.cellSize());
         EXPECT_TRUE(clients.answers() == others.answers());
         EXPECT_EQ(clients.entered, others.entered);
         EXPECT_EQ(clients.left, others.left);
