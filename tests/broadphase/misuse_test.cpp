@@ -183,7 +183,6 @@ TEST_F(Misuse, OfTheCallbacksOfARadiusSearchIsAsserted) {
 }
 
 TEST(MisuseDeathTest, EndsTheProgramWithASentence) {
-    GTEST_FLAG_SET(death_test_style, "threadsafe");
     Grid<float> grid;
     EXPECT_DEATH_IF_SUPPORTED(grid.remove({}),
                               "Only a proxy of this grid that was not removed can be removed");
@@ -334,7 +333,6 @@ TEST(Diagnostics, ABrokenAssertReachesTheHandlerWithItsSentence) {
 }
 
 TEST(DiagnosticsDeathTest, TheDefaultAssertHandlerNamesTheFaultAndAborts) {
-    GTEST_FLAG_SET(death_test_style, "threadsafe");
     EXPECT_DEATH_IF_SUPPORTED(
         detail::reportBrokenAssert("a < b", "What would be right.", "file.cpp", 7),
         "What would be right.*file.cpp:7.*a < b");
