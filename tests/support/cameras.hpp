@@ -33,8 +33,10 @@ template <class Scalar>
     CameraLens lens = randomLens(random);
     lens.depthRange = DepthRange::zeroToOne;
     lens.farPlane *= reach / 20;
-    return cameraMatrix<Scalar>(lens, middle + random.pointIn(-reach, reach),
-                                middle + random.pointIn(-reach, reach));
+    // One after the other: compilers draw arguments of a call in an order of their own.
+    const Vector3<double> target = middle + random.pointIn(-reach, reach);
+    const Vector3<double> eye = middle + random.pointIn(-reach, reach);
+    return cameraMatrix<Scalar>(lens, eye, target);
 }
 
 }  // namespace hashphase::test
