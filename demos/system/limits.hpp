@@ -24,7 +24,8 @@ private:
 /// While it lives, the process gets no more than so many bytes of memory beyond what it has.
 class MemoryLimit {
 public:
-    /// Whether it limits anything. (Sanitizers end a program that runs out of memory.)
+    /// Whether it limits anything. (Sanitizers end a program that runs out of memory, and emulators of other
+    /// processors have no such limit.)
     [[nodiscard]] static bool isPossible() noexcept;
 
     explicit MemoryLimit(std::uint64_t more);

@@ -41,7 +41,13 @@ LimitPause::~LimitPause() {
 }
 
 bool MemoryLimit::isPossible() noexcept {
-    return kCanRunOutOfMemory;
+    if (!kCanRunOutOfMemory) {
+        return false;
+    }
+    // Emulators take no notice of it.
+    const MemoryLimit limit(std::uint64_t{1} << 30);
+    rlimit now{};
+    return getrlimit(RLIMIT_AS, &now) == 0 && now.rlim_cur != limit.before_;
 }
 
 MemoryLimit::MemoryLimit(std::uint64_t more) {
