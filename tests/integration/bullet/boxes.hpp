@@ -120,4 +120,29 @@ struct Boxes : AnyBoxes {
     SpatialHashBroadphase& broadphase = hash();
 };
 
+/// A broadphase of this configuration has the pairs of a serial one, in the same order, in frames in which
+/// thousands of boxes are thrown about.
+inline void expectPairsOfSerialFrames(const SpatialHashConfig& config, int frameCount) {
+    BulletRandom random(0x5eed0901);
+    Boxes serial;
+    Boxes parallel(config);
+    for (int frame = 0; frame < frameCount; ++frame) {
+        for (std::size_t i = 0; i < 12000; ++i) {
+            const btVector3 low = random.vector(0, 50);
+            for (Boxes* boxes : {&serial, &parallel}) {
+                const Box box{low, low + btVector3(1, 1, 1)};
+                if (frame == 0) {
+                    boxes->create(box);
+                } else {
+                    boxes->set(boxes->proxies[i], box);
+                }
+            }
+        }
+        serial.step();
+        parallel.step();
+        ASSERT_GT(serial.pairCount(), 1000);
+        ASSERT_EQ(parallel.list(), serial.list());
+    }
+}
+
 }  // namespace hashphase::test

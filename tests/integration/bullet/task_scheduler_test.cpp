@@ -149,28 +149,7 @@ TEST(BulletFor, ThrowsWhatALoopThrows) {
 }
 
 TEST(BulletFor, GivesTheSamePairsInTheSameOrder) {
-    underEachScheduler([] {
-        BulletRandom random(0x5eed0911);
-        Boxes serial;
-        Boxes parallel(onBulletsThreads());
-        for (int frame = 0; frame < 3; ++frame) {
-            for (std::size_t i = 0; i < 12000; ++i) {
-                const btVector3 low = random.vector(0, 50);
-                for (Boxes* boxes : {&serial, &parallel}) {
-                    const Box box{low, low + btVector3(1, 1, 1)};
-                    if (frame == 0) {
-                        boxes->create(box);
-                    } else {
-                        boxes->set(boxes->proxies[i], box);
-                    }
-                }
-            }
-            serial.step();
-            parallel.step();
-            ASSERT_GT(serial.pairCount(), 1000);
-            ASSERT_EQ(parallel.list(), serial.list());
-        }
-    });
+    underEachScheduler([] { expectPairsOfSerialFrames(onBulletsThreads(), 3); });
 }
 
 /// Bodies that fall on a plane, every third one so fast that Bullet sweeps it; contacts, islands, sweeps and

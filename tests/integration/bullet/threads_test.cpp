@@ -13,31 +13,12 @@ namespace hashphase::test {
 namespace {
 
 TEST(Threads, GiveTheSamePairsInTheSameOrder) {
-    BulletRandom random(0x5eed0901);
     ThreadedFor threadedFor(3, 0x5eed0902);
     SpatialHashConfig config;
     config.parallelFor = [&](std::size_t count, std::size_t grain, LoopBody body) {
         threadedFor(count, grain, body);
     };
-    Boxes serial;
-    Boxes parallel(config);
-    for (int frame = 0; frame < 4; ++frame) {
-        for (std::size_t i = 0; i < 12000; ++i) {
-            const btVector3 low = random.vector(0, 50);
-            for (Boxes* boxes : {&serial, &parallel}) {
-                const Box box{low, low + btVector3(1, 1, 1)};
-                if (frame == 0) {
-                    boxes->create(box);
-                } else {
-                    boxes->set(boxes->proxies[i], box);
-                }
-            }
-        }
-        serial.step();
-        parallel.step();
-        ASSERT_GT(serial.pairCount(), 1000);
-        ASSERT_EQ(parallel.list(), serial.list());
-    }
+    expectPairsOfSerialFrames(config, 4);
     EXPECT_GT(threadedFor.mostRanges(), 1U);
 }
 
