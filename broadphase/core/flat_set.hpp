@@ -188,10 +188,9 @@ public:
     /// Makes room for `count` keys, so that no insertion allocates until there are more.
     void reserve(std::size_t count) {
         checkSize(count);
-        std::size_t groupCount = std::max<std::size_t>(1, groups_.size());
-        while (groupCount * kFullGroup < count) {
-            groupCount *= 2;
-        }
+        const std::size_t needed = count / kFullGroup + (count % kFullGroup == 0 ? 0 : 1);
+        const std::size_t groupCount =
+            std::bit_ceil(std::max<std::size_t>({1, groups_.size(), needed}));
         if (groupCount != groups_.size()) {
             rehash(groupCount);
         }

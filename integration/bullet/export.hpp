@@ -2,11 +2,19 @@
 #pragma once
 
 // What the shared libraries hashphase_bullet and hashphase_bullet_float64 offer: see
-// broadphase/export.hpp.
+// broadphase/export.hpp. HASHPHASE_BULLET_IS_STATIC is 1 where these two are static, as Bullet is, among
+// others that are shared.
 
 #include <broadphase/export.hpp>
 
-#if defined(hashphase_bullet_EXPORTS) || defined(hashphase_bullet_float64_EXPORTS)
+#ifndef HASHPHASE_BULLET_IS_STATIC
+#define HASHPHASE_BULLET_IS_STATIC 0
+#endif
+
+#if HASHPHASE_BULLET_IS_STATIC
+#define HASHPHASE_BULLET_EXPORT
+#define HASHPHASE_BULLET_TEMPLATE_EXPORT
+#elif defined(hashphase_bullet_EXPORTS) || defined(hashphase_bullet_float64_EXPORTS)
 #define HASHPHASE_BULLET_EXPORT HASHPHASE_SYMBOL_EXPORT
 #define HASHPHASE_BULLET_TEMPLATE_EXPORT HASHPHASE_SYMBOL_TEMPLATE_EXPORT
 #else

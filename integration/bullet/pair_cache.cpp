@@ -46,6 +46,10 @@ private:
     int& depth_;
 };
 
+int PairCache::uniqueId(const btBroadphaseProxy& proxy) {
+    return proxy.m_uniqueId;
+}
+
 PairCache::~PairCache() {
     if (watch_ != nullptr) {
         watch_->forget();

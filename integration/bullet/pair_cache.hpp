@@ -122,7 +122,8 @@ public:
     PairCache(const PairCache&) = delete;
     PairCache& operator=(const PairCache&) = delete;
 
-    static int uniqueId(const btBroadphaseProxy& proxy) { return proxy.m_uniqueId; }
+    /// The default key. Not inline: it is known by its address, which is the same in every library.
+    static int uniqueId(const btBroadphaseProxy& proxy);
 
     /// The most pairs that Bullet's array can hold.
     static constexpr std::size_t kMostPairs = std::size_t{1} << 30;

@@ -129,14 +129,18 @@ function(hashphase_install_program)
     install(TARGETS ${ARGN} RUNTIME COMPONENT hashphase_tools)
 endfunction()
 
-# hashphase_add_library(<component> SOURCES <file>... LINKS <target>...)
+# hashphase_add_library(<component> [STATIC] SOURCES <file>... LINKS <target>...)
 #
 # Adds hashphase::<component>, with the repository root as its include folder, and installs it in an
 # export set of its own, so that an installed component asks only for what it needs itself.
 function(hashphase_add_library component)
-    cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINKS")
+    cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "" "SOURCES;LINKS")
     string(REPLACE "-" "_" target hashphase_${component})
-    add_library(${target} ${arg_SOURCES})
+    set(kind "")
+    if(arg_STATIC)
+        set(kind STATIC)
+    endif()
+    add_library(${target} ${kind} ${arg_SOURCES})
     add_library(hashphase::${component} ALIAS ${target})
     hashphase_own_target(${target})
     target_include_directories(
@@ -150,7 +154,7 @@ function(hashphase_add_library component)
                    SOVERSION ${HASHPHASE_ABI_VERSION}
                    CXX_VISIBILITY_PRESET hidden
                    VISIBILITY_INLINES_HIDDEN ON)
-    if(BUILD_SHARED_LIBS)
+    if(BUILD_SHARED_LIBS AND NOT arg_STATIC)
         if(NOT WIN32)
             # Makes no difference, but to precompiled headers, which must not differ in it.
             set_target_properties(${target} PROPERTIES DEFINE_SYMBOL "")

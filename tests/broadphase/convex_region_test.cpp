@@ -93,7 +93,7 @@ TYPED_TEST(ConvexQuery, FindsExactlyTheBoxesThatShareAPointWithAVolumeWithoutACo
     for (int i = 0; i < 10000; ++i) {
         SCOPED_TRACE(i);
         // Across an axis, or across a line that is none but for rounding.
-        const int axis = static_cast<int>(random.below(3));
+        const int axis = random.axis();
         std::vector<Plane> planes;
         const std::uint32_t count = 1 + random.below(4);
         for (std::uint32_t k = 0; k < count; ++k) {

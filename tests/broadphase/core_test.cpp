@@ -204,7 +204,11 @@ TEST(FlatSet, NumbersItsKeysWithoutGaps) {
     EXPECT_EQ(set.find(40), FlatSet::kNone);
     EXPECT_EQ(set.findOrInsert(40), 0U);
     EXPECT_EQ(set.validate(), "");
-    EXPECT_THROW(set.reserve(std::size_t{1} << 32), std::length_error);
+    if (sizeof(std::size_t) > sizeof(std::uint32_t)) {
+        EXPECT_THROW(set.reserve(~std::size_t{0}), std::length_error);
+    } else {  // memory ends first
+        EXPECT_ANY_THROW(set.reserve(~std::size_t{0}));
+    }
     EXPECT_EQ(set.find(40), 0U);
 }
 

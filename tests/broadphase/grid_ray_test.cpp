@@ -60,7 +60,7 @@ TYPED_TEST(RayQuery, KeyMissesNothingAndIsTheFractionOfTheWay) {
         if (i % 3 == 0) {
             // Through an edge: as close a call as there is.
             Vector3<TypeParam> edge = box.min();
-            edge[random.below(3)] = box.center()[0];
+            edge[random.axis()] = box.center()[0];
             to = from + 2 * (edge - from);
         }
         const TypeParam key = RayRegion<TypeParam>(from, to).key(box);

@@ -39,7 +39,7 @@ Vector3<Scalar> anyShift(Random& random) {
     if (random.chance(0.5)) {
         shift = (shift / 64).array().round() * 64;
     }
-    shift[random.below(3)] *= random.chance(0.5) ? 1 : 0;
+    shift[random.axis()] *= random.chance(0.5) ? 1 : 0;
     return shift.cast<Scalar>();
 }
 

@@ -107,7 +107,7 @@ TYPED_TEST(Settled, StayAsLongAsTheyAreWithinTheBoxByWhichTheyAreFiledAndNoLonge
         const Aabb<TypeParam> filed = record.before;
         // As large as that, flat, larger by the least there is, inverted by it, or with a NaN.
         Aabb<TypeParam> box = filed;
-        const auto axis = static_cast<Eigen::Index>(world.random.below(3));
+        const int axis = world.random.axis();
         const bool isMin = world.random.chance(0.5);
         TypeParam& side = isMin ? box.min()[axis] : box.max()[axis];
         const TypeParam opposite = isMin ? box.max()[axis] : box.min()[axis];

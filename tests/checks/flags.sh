@@ -5,7 +5,7 @@
 # compiled once for each set of options, and linked with each build of the libraries; all have to print the
 # same, or not to link and say why.
 
-tools+=(nm:binutils)
+tools+=(nm:binutils i686-linux-gnu-g++:g++-i686-linux-gnu)
 
 # Builds of the libraries: name, build type, options.
 flags_libraries() {
@@ -132,6 +132,7 @@ OPTIONS
 
     flags_holds "refusing _GLIBCXX_DEBUG" flags_refuses plain librariesAreCompiledWith_GLIBCXX_DEBUG \
         g++ -O0 -D_GLIBCXX_DEBUG
+    flags_holds "refusing -m32" flags_refuses plain 'incompatible with i386:x86-64' i686-linux-gnu-g++ -O1
     flags_holds "refusing _GLIBCXX_USE_CXX11_ABI=0" flags_refuses plain \
         librariesAreCompiledWithout_GLIBCXX_USE_CXX11_ABI g++ -O0 -D_GLIBCXX_USE_CXX11_ABI=0
     echo "$passed passed, $failed failed, $skipped skipped"

@@ -102,8 +102,8 @@ check_web() {
     # The second has the scalar kernels as well, and compares them.
     programs=(golden)
     web_build scalar ""
-    run_programs "$web/scalar" node --no-warnings "$web_files/run.mjs"
+    run_programs "$web/scalar" node --no-warnings --single-threaded "$web_files/run.mjs"
     programs=(golden broadphase bullet clients property)
     web_build simd128 -msimd128
-    run_programs "$web/simd128" node --no-warnings "$web_files/run.mjs"
+    run_programs "$web/simd128" node --no-warnings --single-threaded "$web_files/run.mjs"
 }

@@ -13,16 +13,22 @@ libraries+=(wine64)
 
 windows=$root/build/check-windows
 windows_prefix=$windows/prefix
+wine=/usr/lib/wine/wine64
 
-# build_for_windows <name> <source> <cmake option>...: in build/check-windows/<name>.
-build_for_windows() {
+# configure_for_windows <name> <source> <cmake option>...: in build/check-windows/<name>.
+configure_for_windows() {
     say "configuring build/check-windows/$1"
     cmake -S "$2" -B "$windows/$1" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$root/tests/checks/windows.cmake" \
-        -DCMAKE_INSTALL_PREFIX="$windows_prefix" "${@:3}" >&2
+        -DCMAKE_INSTALL_PREFIX="$windows_prefix" -DCMAKE_CROSSCOMPILING_EMULATOR="$wine" "${@:3}" >&2
+}
+
+# build_for_windows <name> <source> <cmake option>...
+build_for_windows() {
+    configure_for_windows "$@"
     cmake --build "$windows/$1" >&2
 }
 
-# What programs need of others: Bullet, GoogleTest, GMP and SQLite.
+# What programs need of others: Bullet, GoogleTest, GMP, SQLite, CLI11 and JSON.
 build_windows_packages() {
     local source # the folder of one
     source=$(source_package bullet)
@@ -58,13 +64,22 @@ build_windows_packages() {
         x86_64-w64-mingw32-ar rcs "$windows_prefix/lib/libsqlite3.a" sqlite3.o
         cp sqlite3.h "$windows_prefix/include"
     )
+    # Headers alone, which are not to bring along all that is beside them.
+    mkdir -p "$windows_prefix/share/cmake"
+    cp -r /usr/include/{CLI,nlohmann} "$windows_prefix/include"
+    cp -r /usr/share/cmake/{CLI11,nlohmann_json} "$windows_prefix/share/cmake"
 }
 
-# on_windows <program> <argument>...: without a screen; it finds installed DLLs and those of GCC.
-on_windows() {
+# with_wine <command>: Wine runs without a screen; programs find installed DLLs and those of GCC.
+with_wine() {
     DISPLAY='' WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml=' WINEPREFIX=$windows/wine \
         WINEPATH="Z:$installed/bin;Z:/usr/lib/gcc/x86_64-w64-mingw32/12-posix;Z:/usr/x86_64-w64-mingw32/lib" \
-        /usr/lib/wine/wine64 "$@" </dev/null | tr -d '\r'
+        "$@" </dev/null
+}
+
+# on_windows <program> <argument>...
+on_windows() {
+    with_wine "$wine" "$@" 2>&1 | tr -d '\r'
 }
 
 # count_tests <program>: adds its tests to those that have `passed`, `failed` and been `skipped`.
@@ -72,13 +87,17 @@ count_tests() {
     local output word count
     say "${1##*/}"
     output=$(on_windows "$1" --gtest_brief=1) || true
-    grep -v '^takes minutes\|: Skipped$' <<<"$output" >&2
+    if [[ $output == *'[  FAILED  ]'* || $output != *'[  PASSED  ]'* ]]; then
+        echo "$output" >&2
+    fi
     for word in PASSED FAILED SKIPPED; do
         count=$(sed -n "s/^\[  *$word *\] \([0-9]*\) tests\?[.,].*/\1/p" <<<"$output")
-        declare -g "${word,,}=$((${word,,} + ${count:-0}))"
+        printf -v "${word,,}" %d $((${word,,} + ${count:-0}))
     done
     # A program that ended early has passed nothing.
-    [[ $output == *'[  PASSED  ]'* ]] || failed=$((failed + 1))
+    if [[ $output != *'[  PASSED  ]'* ]]; then
+        failed=$((failed + 1))
+    fi
 }
 
 # count_output <what> <expected> <output>
@@ -91,31 +110,35 @@ count_output() {
     fi
 }
 
-# test_on_windows <static|shared> <cmake option>...
+# test_on_windows <static|shared> <cmake option>...: the libraries, what is built with them where they are
+# installed, and their tests.
 test_on_windows() {
     local name=$1 installed=$windows/installed-$1 program component
     # pkg-config knows this system's packages.
     export PKG_CONFIG_LIBDIR=$windows_prefix/lib/pkgconfig
     local options=(-DCMAKE_PREFIX_PATH="$windows_prefix" -DEigen3_DIR=/usr/share/eigen3/cmake)
-    cmake -S "$root" -B "$windows/$name" -G Ninja -DCMAKE_TOOLCHAIN_FILE="$root/tests/checks/windows.cmake" \
-        "${options[@]}" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_INSTALL_PREFIX="$installed" \
-        -DHASHPHASE_ASSERTS=ON -DHASHPHASE_BUILD_BENCHMARKS=OFF -DHASHPHASE_QUICK_BUILD=ON \
-        -DHASHPHASE_WARNINGS_AS_ERRORS=OFF -DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST \
-        "${@:2}" >&2
-    cmake --build "$windows/$name" --target hashphase_{effects,bullet} \
-        {golden,broadphase,bullet,clients}-tests >&2
+    local own=("${options[@]}" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_INSTALL_PREFIX="$installed"
+        -DHASHPHASE_ASSERTS=ON -DHASHPHASE_BUILD_BENCHMARKS=OFF -DHASHPHASE_QUICK_BUILD=ON
+        -DHASHPHASE_WARNINGS_AS_ERRORS=OFF -DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST "${@:2}")
+    # Without tests, DLLs hide what is not for the user.
+    build_for_windows "$name" "$root" "${own[@]}" -DHASHPHASE_BUILD_TESTS=OFF -DHASHPHASE_BUILD_DEMOS=OFF
     for component in libraries development; do
         cmake --install "$windows/$name" --component "hashphase_$component" >/dev/null
     done
-    for program in golden broadphase integration/bullet integration/clients; do
-        count_tests "$windows/$name/tests/$program/${program##*/}-tests.exe"
-    done
+    options+=(-DCMAKE_BUILD_TYPE=Release -Dhashphase_DIR="$installed/lib/cmake/hashphase")
     for program in overlapping_pair misuse_within_callback; do
         build_for_windows "$name-$program" "$root/tests/package/find_package" "${options[@]}" \
-            -Dhashphase_DIR="$installed/lib/cmake/hashphase" -DCOMPONENTS=bullet -DLIBRARY=bullet \
-            -DMAIN="$program.cpp"
+            -DCOMPONENTS=bullet -DLIBRARY=bullet -DMAIN="$program.cpp"
         count_output "$program with $name libraries" "pairs: 1" \
             "$(on_windows "$windows/$name-$program/consumer.exe")"
+    done
+    build_for_windows "$name-examples" "$root/demos/examples" "${options[@]}"
+    count_output "the examples with $name libraries" "100% tests passed, 0 tests failed out of 7" \
+        "$(with_wine ctest --test-dir "$windows/$name-examples" --output-on-failure)"
+    configure_for_windows "$name" "$root" "${own[@]}" -DHASHPHASE_BUILD_TESTS=ON
+    cmake --build "$windows/$name" --target {golden,broadphase,bullet,clients}-tests >&2
+    for program in golden broadphase bullet clients; do
+        count_tests "$windows/$name/demos/$program-tests.exe"
     done
 }
 
@@ -123,16 +146,15 @@ check_windows() {
     local passed=0 failed=0 skipped=0 stack=-Wl,--stack,1048576 # as MSVC's linker has it
     build_windows_packages
     # Tests bring a `new` of their own, which the run-time library has to take as well.
-    test_on_windows static -DBUILD_SHARED_LIBS=OFF -DCMAKE_EXE_LINKER_FLAGS="-static $stack" \
-        -DHASHPHASE_BUILD_DEMOS=ON -DCLI11_DIR=/usr/share/cmake/CLI11 \
-        -Dnlohmann_json_DIR=/usr/share/cmake/nlohmann_json
+    test_on_windows static -DBUILD_SHARED_LIBS=OFF -DCMAKE_EXE_LINKER_FLAGS="-static $stack"
     local installed=$windows/installed-static
+    cmake -S "$root" -B "$windows/static" -DHASHPHASE_BUILD_DEMOS=ON >/dev/null
     cmake --build "$windows/static" --target hashphase hashphase-compare hashphase-try >&2
     count_output 'hashphase compare' 'pair sets exact in every frame: yes' \
-        "$(on_windows "$windows/static/demos/hashphase.exe" compare --objects 500 --frames 20 2>&1)"
+        "$(on_windows "$windows/static/demos/hashphase.exe" compare --objects 500 --frames 20)"
     count_output 'hashphase try' $'is for Linux alone.\nstatus 2' \
-        "$(on_windows "$windows/static/demos/hashphase.exe" try -- game.exe 2>&1 || echo "status $?")"
-    test_on_windows shared -DBUILD_SHARED_LIBS=ON -DCMAKE_EXE_LINKER_FLAGS="$stack" -DHASHPHASE_BUILD_DEMOS=OFF
+        "$(on_windows "$windows/static/demos/hashphase.exe" try -- game.exe || echo "status $?")"
+    test_on_windows shared -DBUILD_SHARED_LIBS=ON -DCMAKE_EXE_LINKER_FLAGS="$stack"
     say "on Windows: $passed passed, $failed failed, $skipped skipped"
     ((failed == 0))
 }

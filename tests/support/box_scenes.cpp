@@ -52,7 +52,7 @@ Aabb<Scalar> hostileBox(Random& random) {
     const std::uint32_t spoiled = 1 + random.below(3);
     for (std::uint32_t i = 0; i < spoiled; ++i) {
         Vector3<Scalar>& corner = random.chance(0.5) ? box.min() : box.max();
-        corner[random.below(3)] = hostileNumber<Scalar>(random);
+        corner[random.axis()] = hostileNumber<Scalar>(random);
     }
     if (random.chance(0.2)) {
         std::swap(box.min(), box.max());
@@ -136,7 +136,7 @@ BoxScene<Scalar> latticeScene(std::string name, double edge, double lowest) {
                 Vector3<double> lattice =
                     (box.min().template cast<double>() / edge).array().round().matrix();
                 const double cells = std::round(static_cast<double>(box.sizes()[0]) / edge);
-                lattice[random.below(3)] += random.chance(0.5) ? 1 : -1;
+                lattice[random.axis()] += random.chance(0.5) ? 1 : -1;
                 return boxAt(lattice, cells);
             }};
 }
@@ -151,7 +151,7 @@ BoxScene<Scalar> planeScene() {
             return drawSmall(random);
         }
         Aabb<Scalar> plane = makeBox<Scalar>(-huge, -huge, -huge, huge, huge, huge);
-        plane.max()[random.below(3)] = static_cast<Scalar>(random.between(-5, 5));
+        plane.max()[random.axis()] = static_cast<Scalar>(random.between(-5, 5));
         return plane;
     };
     return scene;
@@ -167,7 +167,7 @@ BoxScene<Scalar> pointScene() {
             },
             [](Random& random, const Aabb<Scalar>& box) {
                 Aabb<Scalar> moved = box;
-                const std::uint32_t axis = random.below(3);
+                const int axis = random.axis();
                 moved.min()[axis] += 1;
                 moved.max()[axis] += 1;
                 return moved;

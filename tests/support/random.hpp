@@ -35,6 +35,9 @@ public:
         return static_cast<std::uint32_t>(unit() * static_cast<double>(count));
     }
 
+    /// 0, 1 or 2.
+    int axis() { return static_cast<int>(below(3)); }
+
     bool chance(double share) { return unit() < share; }
 
     Vector3<double> pointIn(const Vector3<double>& low, const Vector3<double>& high) {

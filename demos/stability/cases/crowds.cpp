@@ -6,7 +6,9 @@
 
 #include <broadphase/radius_search.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <new>
 #include <stdexcept>
 
@@ -214,7 +216,10 @@ void expectMostIsRefused(CaseRun<Scalar>& run) {
     Grid<Scalar> grid;
     const ProxyId id = grid.add(cubeAt<Scalar>({0, 0, 0}, 1));
     constexpr std::size_t kMost = std::size_t{1} << 28;
-    for (const std::size_t count : {kMost + 1, std::size_t{1} << 32, ~std::size_t{0}}) {
+    // 0 where counts have 32 bits.
+    constexpr auto kOnePast32Bits = static_cast<std::size_t>(std::uint64_t{1} << 32);
+    for (const std::size_t count :
+         {kMost + 1, std::max(kMost + 1, kOnePast32Bits), ~std::size_t{0}}) {
         std::string refusal;
         try {
             grid.reserve(count);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Zlib
 //
-// Usage: node run.mjs PROGRAM [ARGUMENT...]
+// Usage: node --single-threaded run.mjs PROGRAM [ARGUMENT...]
 //
-// Runs a WebAssembly program of WASI, which sees all files.
+// Runs a WebAssembly program of WASI, which sees all files. With threads, Node.js 20 crashes when a large program
+// has ended.
 
 import { readFile } from "node:fs/promises";
 import { WASI } from "node:wasi";

@@ -25,7 +25,7 @@ set(CMAKE_CXX_STANDARD_LIBRARIES
     "-lc++ -lc++abi -lunwind -lwasi-emulated-signal -lwasi-emulated-process-clocks -lc-printscan-long-double")
 set(CMAKE_EXECUTABLE_SUFFIX .wasm)
 
-set(CMAKE_CROSSCOMPILING_EMULATOR node --no-warnings ${CMAKE_CURRENT_LIST_DIR}/run.mjs)
+set(CMAKE_CROSSCOMPILING_EMULATOR node --no-warnings --single-threaded ${CMAKE_CURRENT_LIST_DIR}/run.mjs)
 
 set(CMAKE_FIND_ROOT_PATH ${HASHPHASE_WEB})
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)

@@ -47,6 +47,8 @@ class Fall {
 public:
     explicit Fall(std::unique_ptr<btBroadphaseInterface> broadphase)
         : broadphase_(std::move(broadphase)), world_(makeWorld()) {
+        compound_.addChildShape(placeAt({1, 0, 0}), &ball_);
+        compound_.addChildShape(placeAt({-1, 0, 0}), &box_);
         ground_.setCollisionShape(&plane_);
         world_->addCollisionObject(&ground_, btBroadphaseProxy::StaticFilter,
                                    btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
@@ -118,12 +120,7 @@ private:
     btStaticPlaneShape plane_{{0, 1, 0}, 0};
     btSphereShape ball_{btScalar(0.5)};
     btBoxShape box_{btVector3(btScalar(0.3), btScalar(0.5), btScalar(0.7))};
-    btCompoundShape compound_ = [this] {
-        btCompoundShape compound;
-        compound.addChildShape(placeAt({1, 0, 0}), &ball_);
-        compound.addChildShape(placeAt({-1, 0, 0}), &box_);
-        return compound;
-    }();
+    btCompoundShape compound_;
     btSoftBodyRigidBodyCollisionConfiguration configuration_;
     btCollisionDispatcher dispatcher_{&configuration_};
     Solver solver_;

@@ -87,7 +87,7 @@ TEST(Footprint, IsThatOfEachEffectAddedUpToTheByte) {
 
 TEST(Footprint, IsWhatTheHeapHolds) {
     if (!kCountsAllocations) {
-        GTEST_SKIP() << "allocations are not counted under a sanitizer";
+        GTEST_SKIP() << "this program has another `new`";
     }
     for (const EffectSet declared : someSubsets()) {
         const std::size_t before = bytesHeld();
@@ -116,7 +116,7 @@ TEST(Footprint, OfWhatIsTakenBackIsGone) {
 
 TEST(EffectsFrame, LikeTheLastOneAllocatesNothing) {
     if (!kCountsAllocations) {
-        GTEST_SKIP() << "allocations are not counted under a sanitizer";
+        GTEST_SKIP() << "this program has another `new`";
     }
     for (const EffectSet declared : someSubsets()) {
         Simulation<float> simulation(smallSceneEffects(declared));
