@@ -103,6 +103,9 @@ public:
         return {Corner(edges[0], edges[1]), Corner(edges[2], edges[3])};
     }
 
+    /// rectangleBetween() as left, bottom, right and top.
+    [[nodiscard]] detail::ScreenEdges<Scalar> edgesBetween(const Pixel& a, const Pixel& b) const;
+
     /// As given.
     template <class Result = Matrix>
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Result viewProjection() const noexcept {
@@ -117,7 +120,6 @@ private:
     };
     Camera(const Unaligned& matrix, DepthRange depthRange, const Viewport& viewport,
            DepthOrder depthOrder);
-    [[nodiscard]] detail::ScreenEdges<Scalar> edgesBetween(const Pixel& a, const Pixel& b) const;
     [[nodiscard]] detail::Vector2<double> deviceCoordinates(const Pixel& pixel) const;
 
     detail::Matrix4<Scalar> viewProjection_;

@@ -160,7 +160,8 @@ PointList hullOf(const PointList& points, double doubt) {
 PointList normalsOf(const PointList& corners) {
     PointList normals;
     for (std::size_t i = 0; i < corners.size() && corners.size() > 1; ++i) {
-        const Point2 way = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
+        Point2 way = corners[(i + 1) % corners.size()] - corners[i];
+        way.normalize();
         normals.push({-way.y(), way.x()});
     }
     // A line has ends, and a point is a box.

@@ -2,18 +2,30 @@
 #include <integration/picking/drag_selection.hpp>
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 namespace hashphase {
+namespace {
+
+// Not camera.viewProjection(): a matrix of the program's lies otherwise (core/unaligned.hpp).
+template <class Scalar>
+detail::Matrix4<Scalar> matrixOf(const Camera<Scalar>& camera) {
+    return camera.template viewProjection<detail::Matrix4<Scalar>>();
+}
+
+}  // namespace
 
 template <class Scalar>
 std::string selectionError(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b) {
     if (!camera.isValid()) {
-        return cameraError(camera.viewProjection(), camera.viewport());
+        return detail::cameraError<Scalar>(matrixOf(camera), camera.viewport());
     }
     if (a.hasNaN() || b.hasNaN()) {
         return "A corner of the rectangle is NaN; both must be places in the window.";
     }
-    if (camera.rectangleBetween(a, b).isEmpty()) {
+    const auto [left, bottom, right, top] = camera.edgesBetween(a, b);
+    if (left > right || bottom > top) {
         return "The rectangle lies beside the viewport; some of it must lie inside.";
     }
     return {};
@@ -22,8 +34,10 @@ std::string selectionError(const Camera<Scalar>& camera, const Pixel& a, const P
 template <class Scalar>
 ConvexRegion<Scalar> selectionRegion(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                                      Containment containment) {
-    return frustumRegion(camera.viewProjection(), camera.depthRange(),
-                         camera.rectangleBetween(a, b), containment, Touch::exact);
+    const std::array<detail::Plane<Scalar>, 6> planes = detail::frustumPlanes<Scalar>(
+        matrixOf(camera), camera.depthRange(), camera.edgesBetween(a, b));
+    return ConvexRegion<Scalar>(std::span<const detail::Plane<Scalar>>(planes), containment,
+                                Touch::exact);
 }
 
 template <class Scalar>

@@ -69,19 +69,10 @@ std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>& ray,
     return result;
 }
 
-template <class Scalar>
-GroundFootprint<Scalar> dragFootprint(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
-                                      const HeightRange<Scalar>& heights, double farthest) {
-    return {camera.viewProjection(), camera.depthRange(), heights, camera.rectangleBetween(a, b),
-            farthest};
-}
-
 #define HASHPHASE_INSTANTIATE(Scalar)                                                              \
     template RayRegion<Scalar> clipToHeights(const RayRegion<Scalar>&,                             \
                                              const HeightRange<Scalar>&);                          \
-    template std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>&, Scalar, UpAxis); \
-    template GroundFootprint<Scalar> dragFootprint(                                                \
-        const Camera<Scalar>&, const Pixel&, const Pixel&, const HeightRange<Scalar>&, double)
+    template std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>&, Scalar, UpAxis)
 
 HASHPHASE_INSTANTIATE(float);
 HASHPHASE_INSTANTIATE(double);

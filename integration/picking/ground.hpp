@@ -34,8 +34,11 @@ template <class Scalar>
 /// Returns the part of the ground under a rectangle that is dragged on the screen (see drag_selection.hpp and
 /// ground_footprint.hpp). Select by its region(), which counts the air above the ground too, as on a map.
 template <class Scalar>
-[[nodiscard]] HASHPHASE_PICKING_EXPORT GroundFootprint<Scalar> dragFootprint(
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline GroundFootprint<Scalar> dragFootprint(
     const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
-    const HeightRange<Scalar>& heights, double farthest = kFarthestView);
+    const HeightRange<Scalar>& heights, double farthest = kFarthestView) {
+    return {camera.viewProjection(), camera.depthRange(), heights, camera.rectangleBetween(a, b),
+            farthest};
+}
 
 }  // namespace hashphase

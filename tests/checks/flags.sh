@@ -80,14 +80,18 @@ flags_agrees() {
     cmp -s "$folder/$2-plain-plain.txt" "$output"
 }
 
-# flags_refuses <library build> <words> <compiler> <option>...: the program does not link, and says why.
+# flags_refuses <library build> <object> <words>: the program does not link, and says why.
 flags_refuses() {
-    local object=$folder/refused.o
-    flags_compile "$3" flag_traps "$object" "${@:4}" || return
-    if flags_run "$1" "$object" "$folder/refused" >"$folder/refused.txt" 2>&1; then
+    if flags_run "$1" "$2" "$folder/refused" >"$folder/refused.txt" 2>&1; then
         return 1
     fi
-    grep -q "$2" "$folder/refused.txt"
+    grep -q "$3" "$folder/refused.txt"
+}
+
+# flags_refuses_program <words> <compiler> <option>...
+flags_refuses_program() {
+    flags_compile "$2" flag_traps "$folder/refused.o" "${@:3}" || return
+    flags_refuses plain "$folder/refused.o" "$1"
 }
 
 check_flags() {
@@ -113,7 +117,7 @@ check_flags() {
 -mavx2 -mfma -DEIGEN_DEFAULT_TO_ROW_MAJOR -fshort-enums
 OPTIONS
 
-    for source in flag_traps flag_worlds; do
+    for source in flag_traps flag_worlds flag_derived; do
         while read -r name flags; do
             say "$source with $flags"
             # shellcheck disable=SC2086
@@ -124,17 +128,24 @@ OPTIONS
                 continue
             fi
             for library in plain fast bare; do
+                if [[ $source == flag_derived && $library == fast && $flags != *-fno-rtti* ]]; then
+                    flags_holds "refusing $source of $name with libraries without RTTI" \
+                        flags_refuses $library "$folder/$source-$name.o" 'typeinfo for hashphase::'
+                    continue
+                fi
                 flags_holds "$source of $name with the libraries of $library" \
                     flags_agrees $library $source "$name"
             done
         done < <(flags_programs)
     done
 
-    flags_holds "refusing _GLIBCXX_DEBUG" flags_refuses plain librariesAreCompiledWith_GLIBCXX_DEBUG \
-        g++ -O0 -D_GLIBCXX_DEBUG
-    flags_holds "refusing -m32" flags_refuses plain 'incompatible with i386:x86-64' i686-linux-gnu-g++ -O1
-    flags_holds "refusing _GLIBCXX_USE_CXX11_ABI=0" flags_refuses plain \
-        librariesAreCompiledWithout_GLIBCXX_USE_CXX11_ABI g++ -O0 -D_GLIBCXX_USE_CXX11_ABI=0
+    flags_holds "refusing _GLIBCXX_DEBUG" \
+        flags_refuses_program librariesAreCompiledWith_GLIBCXX_DEBUG g++ -O0 -D_GLIBCXX_DEBUG
+    flags_holds "refusing _GLIBCXX_USE_CXX11_ABI=0" \
+        flags_refuses_program librariesAreCompiledWithout_GLIBCXX_USE_CXX11_ABI g++ -O0 -D_GLIBCXX_USE_CXX11_ABI=0
+    # As -m32.
+    flags_holds "refusing 32 bits" flags_refuses_program 'incompatible with i386:x86-64' \
+        i686-linux-gnu-g++ -O1 -msse2 -mfpmath=sse
     echo "$passed passed, $failed failed, $skipped skipped"
     ((failed == 0))
 }

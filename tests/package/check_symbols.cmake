@@ -20,6 +20,11 @@ foreach(object IN LISTS objects)
     execute_process(COMMAND ${NM} -C --defined-only ${object} OUTPUT_VARIABLE output
                     COMMAND_ERROR_IS_FATAL ANY)
     string(REGEX REPLACE "[][;]" "_" output "${output}") # which CMake's lists make much of
+    # Of a constant in an expression, and of a column of another matrix, the type is named, and there is none.
+    set(plain "Eigen::(Matrix|Array)<[^<>]*>")
+    string(REGEX REPLACE "scalar_(constant|identity)_op<[a-z]+>, ${plain}" "" output "${output}")
+    string(REGEX REPLACE "(mapbase_evaluator<Eigen::Block<${plain}( const)?, [0-9, ]+, (true|false)>), ${plain}"
+           "\\1" output "${output}")
     string(REGEX MATCHALL "[^\n]* [WVu] [^\n]*" weak "${output}")
     set(pattern "${aligned}")
     if(object MATCHES "kernels_avx")

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 //
-// As flag_traps.cpp, with Bullet: worlds and broadphases of the program's own, which may have been compiled
-// without RTTI and without exceptions.
+// As flag_traps.cpp, with Bullet: worlds of the program's own, which may have been compiled without RTTI and
+// without exceptions.
 
 #include <integration/bullet/origin_shift.hpp>
 #include <integration/bullet/parallel_aabbs.hpp>
@@ -18,9 +18,6 @@ namespace {
 
 struct OwnWorld : ParallelAabbs<btDiscreteDynamicsWorld> {
     using ParallelAabbs::ParallelAabbs;
-};
-struct OwnBroadphase : SpatialHashBroadphase {
-    using SpatialHashBroadphase::SpatialHashBroadphase;
 };
 struct OwnDbvt : btDbvtBroadphase {};
 
@@ -66,11 +63,11 @@ void configure(Scene& scene) {
 }  // namespace
 
 int main() {
-    OwnBroadphase own(onThreads());
+    SpatialHashBroadphase own(onThreads());
     Scene ours(own);
     ours.world.updateAabbs();
     ours.world.computeOverlappingPairs();
-    show("own broadphase", ours);
+    show("our broadphase", ours);
     configure(ours);
     btRigidBody& body = *btRigidBody::upcast(ours.world.getCollisionObjectArray()[0]);
     btPoint2PointConstraint joint(body, {0, 0, 0});
