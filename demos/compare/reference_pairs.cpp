@@ -91,13 +91,13 @@ void findBySweep(std::span<const Aabb<float>> boxes, std::span<const CollisionFi
                                           low[0].end(), high[0][i]);
         const auto last = static_cast<std::size_t>(end - low[0].begin());
         // Written without branches: whether a candidate overlaps cannot be predicted.
+        const auto isOrdered = [](auto a, auto b) { return a <= b ? 1U : 0U; };
         std::size_t hitCount = 0;
         for (std::size_t j = i + 1; j < last; ++j) {
             hits[hitCount] = static_cast<std::uint32_t>(j);
-            const bool hit = (low[0][i] <= high[0][j]) & (low[1][j] <= high[1][i]) &
-                             (low[1][i] <= high[1][j]) & (low[2][j] <= high[2][i]) &
-                             (low[2][i] <= high[2][j]);
-            hitCount += hit ? 1 : 0;
+            hitCount += isOrdered(low[0][i], high[0][j]) & isOrdered(low[1][j], high[1][i]) &
+                        isOrdered(low[1][i], high[1][j]) & isOrdered(low[2][j], high[2][i]) &
+                        isOrdered(low[2][i], high[2][j]);
         }
         for (std::size_t hit = 0; hit < hitCount; ++hit) {
             const std::uint32_t a = order.object[i];

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Zlib
 # shellcheck shell=bash
 #
-# The newest Bullet and Eigen, and the newest compiler that the packages have (Clang 19) with its own standard
-# library as C++26. The sources of Bullet and Eigen are those in $HASHPHASE_BULLET_SOURCE and
+# The newest Bullet and Eigen: by GCC, in single precision without threads, and in double precision, with them, as
+# C++23; and by the newest compiler that the packages have (Clang 19) with its own standard library as C++26. The sources of Bullet and Eigen are those in $HASHPHASE_BULLET_SOURCE and
 # $HASHPHASE_EIGEN_SOURCE, or else what their public repositories have, or else Debian's source packages.
 
 # shellcheck source=tests/checks/sources.sh
@@ -52,7 +52,7 @@ build_newest() {
 # install_bullet <name> <cmake option>...: Bullet as a package of its own makers', in double precision.
 install_bullet() {
     build=$root/build/check-bullet-$1
-    cmake -S "$bullet" -B "$build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release -DINSTALL_LIBS=ON \
+    cmake --fresh -S "$bullet" -B "$build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=Release -DINSTALL_LIBS=ON \
         -DCMAKE_POLICY_VERSION_MINIMUM=3.5 -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DUSE_DOUBLE_PRECISION=ON \
         -DBUILD_{BULLET2_DEMOS,BULLET3,CPU_DEMOS,EGL,ENET,CLSOCKET,EXTRAS,OPENGL3_DEMOS,UNIT_TESTS}=OFF \
         -DCMAKE_INSTALL_PREFIX="$build/prefix" "${@:2}" >/dev/null
@@ -61,21 +61,18 @@ install_bullet() {
 
 # In single precision, Bullet is a part of the same build; in double precision, it is installed.
 check_bullet() {
-    local all=("${programs[@]}") threads outcome=0 counts=()
+    local outcome=0 counts=()
     bullet=$(newest_sources bullet https://github.com/bulletphysics/bullet3.git bullet src)
     eigen=$(newest_sources eigen https://gitlab.com/libeigen/eigen.git eigen3 Eigen)
-    for threads in OFF ON; do
-        programs=(bullet)
-        build_newest "float32-threads-$threads" -DBullet_SOURCES="$bullet" \
-            -DBULLET2_MULTITHREADING="$threads" -DHASHPHASE_BUILD_DEMOS=OFF
-        counts+=("$(run_programs "$build/hashphase")") || outcome=1
-        programs=(bullet-float64)
-        install_bullet "installed-threads-$threads" -DBULLET2_MULTITHREADING="$threads"
-        build_newest "float64-threads-$threads" -DCMAKE_PREFIX_PATH="$build/prefix" -DHASHPHASE_BUILD_DEMOS=OFF
-        counts+=("$(run_programs "$build/hashphase")") || outcome=1
-    done
-    programs=("${all[@]}")
-    build_newest clang -DBullet_SOURCES="$bullet" -DBULLET2_MULTITHREADING=ON \
+    programs=(bullet)
+    build_newest float32 -DBullet_SOURCES="$bullet" -DBULLET2_MULTITHREADING=OFF -DHASHPHASE_BUILD_DEMOS=OFF
+    counts+=("$(run_programs "$build/hashphase")") || outcome=1
+    programs=(bullet-float64)
+    install_bullet installed -DBULLET2_MULTITHREADING=ON
+    build_newest float64 -DCMAKE_PREFIX_PATH="$build/prefix" -DCMAKE_CXX_STANDARD=23 -DHASHPHASE_BUILD_DEMOS=OFF
+    counts+=("$(run_programs "$build/hashphase")") || outcome=1
+    programs=(golden broadphase bullet clients property)
+    build_newest clang -DBullet_SOURCES="$bullet" -DBULLET2_MULTITHREADING=ON -DHASHPHASE_BUILD_DEMOS=ON \
         -DGTest_SOURCES=/usr/src/googletest -DCMAKE_DISABLE_FIND_PACKAGE_rapidcheck=ON \
         -DCMAKE_CXX_STANDARD=26 -DCMAKE_C_COMPILER=clang-19 -DCMAKE_CXX_COMPILER=clang++-19 \
         -DCMAKE_CXX_FLAGS=-stdlib=libc++

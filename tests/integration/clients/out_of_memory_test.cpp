@@ -265,7 +265,7 @@ TEST_F(OutOfMemory, LetsASimulationGoOnAfterADeclarationThatFailed) {
             simulation.declare(smallSceneEffects(kSimulated));
             expectValidAfter(1, simulation);
         });
-    EXPECT_GT(failures, 20U);
+    EXPECT_GT(failures, 15U);  // with libc++ 17
 }
 
 }  // namespace
