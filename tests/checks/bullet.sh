@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Zlib
 # shellcheck shell=bash
 #
-# The newest Bullet and Eigen: by GCC, in single precision without threads, and in double precision, with them, as
-# C++23; and by the newest compiler that the packages have (Clang 19) with its own standard library as C++26. The sources of Bullet and Eigen are those in $HASHPHASE_BULLET_SOURCE and
-# $HASHPHASE_EIGEN_SOURCE, or else what their public repositories have, or else Debian's source packages.
+# The newest Bullet and Eigen: by GCC, in single precision without threads, and in double precision with them as
+# C++23; and by the newest compiler that the packages have (Clang 19) with its own standard library as C++26. The
+# sources of Bullet and Eigen are those in $HASHPHASE_BULLET_SOURCE and $HASHPHASE_EIGEN_SOURCE, or else what their
+# public repositories have, or else Debian's source packages.
 
 # shellcheck source=tests/checks/sources.sh
 source "$root/tests/checks/sources.sh"

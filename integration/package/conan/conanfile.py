@@ -93,7 +93,10 @@ class HashphaseConan(ConanFile):
         bullet = "bullet-float64" if is_double else "bullet"
         self._add_library(bullet, ["broadphase", "bullet3::bullet3"])
         if is_double:
-            self.cpp_info.components[bullet].defines = ["BT_USE_DOUBLE_PRECISION"]
+            self.cpp_info.components[bullet].defines.append("BT_USE_DOUBLE_PRECISION")
+        if self.options.shared:
+            # CMake cannot tell of a target of Conan's that it is shared (integration/bullet/CMakeLists.txt).
+            self.cpp_info.components[bullet].defines.append("HASHPHASE_BULLET_IS_STATIC=1")
 
     def _add_library(self, name, requires):
         component = self.cpp_info.components[name]
