@@ -26,9 +26,10 @@ instructions_of() {
             END { print count + 0 }'
 }
 
-# What NEON's kernels run is at most 1.3 times what SSE2's run for the same boxes.
+# compare_kernel_instructions <build for ARM64>: what NEON's kernels run is at most 1.3 times what SSE2's run for
+# the same boxes.
 compare_kernel_instructions() {
-    local arm64=$build neon sse2 operation a b
+    local arm64=$1 neon sse2 operation a b
     configure arm64-twin -DCMAKE_BUILD_TYPE=RelWithDebInfo -DHASHPHASE_BUILD_TESTS=OFF
     cmake --build "$build" --target hashphase_broadphase >&2
     sse2=$(kernel_program g++ "$build" kernels_sse2)
@@ -36,9 +37,11 @@ compare_kernel_instructions() {
     say "instructions of the kernels, as QEMU counts them: NEON, SSE2, ratio"
     for operation in $("$build/kernel-instructions"); do
         # shellcheck disable=SC2086
-        a=$(instructions_of qemu-aarch64 "$arm64/kernel-instructions" "$operation" NEON $neon)
+        instructions_of qemu-aarch64 "$arm64/kernel-instructions" "$operation" NEON $neon >"$build/neon.txt" &
         # shellcheck disable=SC2086
         b=$(instructions_of qemu-x86_64 "$build/kernel-instructions" "$operation" SSE2 $sse2)
+        wait
+        a=$(<"$build/neon.txt")
         awk -v name="$operation" -v a="$a" -v b="$b" 'BEGIN {
             printf "    %-20s %10d %10d %6.2f\n", name, a, b, a / b
             exit !(a > 0 && a <= 1.3 * b)
@@ -47,15 +50,16 @@ compare_kernel_instructions() {
 }
 
 check_arm64() {
-    local sysroot
+    local sysroot arm64
     programs=(golden broadphase bullet clients)
     sysroot=$(foreign_packages arm64 libbullet-dev libbullet3.24 libgtest-dev libgmp-dev libgmp10)
     configure arm64 -DCMAKE_BUILD_TYPE=RelWithDebInfo -DEigen3_DIR=/usr/share/eigen3/cmake \
         -DCMAKE_TOOLCHAIN_FILE="$root/tests/checks/arm64.cmake" -DHASHPHASE_SYSROOT="$sysroot" \
         -DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST
     build_tests
+    arm64=$build
+    compare_kernel_instructions "$arm64"
     # What takes QEMU minutes each, and has its like among the others.
     leaves_out='*/H45*:*Million*:WhoIsNear*'
-    run_programs "$build" qemu-aarch64 -L /usr/aarch64-linux-gnu
-    compare_kernel_instructions
+    run_programs "$arm64" qemu-aarch64 -L /usr/aarch64-linux-gnu
 }

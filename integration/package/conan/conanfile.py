@@ -83,20 +83,22 @@ class HashphaseConan(ConanFile):
         self.cpp_info.set_property("cmake_file_name", "hashphase")
         self._add_library("broadphase", ["eigen::eigen"])
         flags = {"ENABLE_ASSERTS": self._has_asserts, "SHARED": self.options.shared}
-        self.cpp_info.components["broadphase"].defines = [
-            f"HASHPHASE_{name}={int(bool(value))}" for name, value in flags.items()
-        ]
+        self.cpp_info.components["broadphase"].defines = self._defines(flags)
         for client, others in CLIENTS.items():
             self._add_library(client, ["broadphase", *others])
         self._add_library("effects", list(CLIENTS))
         is_double = self.dependencies["bullet3"].options.get_safe("double_precision")
         bullet = "bullet-float64" if is_double else "bullet"
         self._add_library(bullet, ["broadphase", "bullet3::bullet3"])
+        # CMake cannot tell of a target of Conan's that it is shared (integration/bullet/CMakeLists.txt).
+        defines = self._defines({"BULLET_IS_STATIC": self.options.shared})
         if is_double:
-            self.cpp_info.components[bullet].defines.append("BT_USE_DOUBLE_PRECISION")
-        if self.options.shared:
-            # CMake cannot tell of a target of Conan's that it is shared (integration/bullet/CMakeLists.txt).
-            self.cpp_info.components[bullet].defines.append("HASHPHASE_BULLET_IS_STATIC=1")
+            defines.append("BT_USE_DOUBLE_PRECISION")
+        self.cpp_info.components[bullet].defines = defines
+
+    @staticmethod
+    def _defines(flags):
+        return [f"HASHPHASE_{name}={int(bool(value))}" for name, value in flags.items()]
 
     def _add_library(self, name, requires):
         component = self.cpp_info.components[name]
