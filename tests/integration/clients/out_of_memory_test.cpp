@@ -241,7 +241,7 @@ TEST_F(OutOfMemory, LetsASimulationGoOnAfterAFrameThatFailed) {
 }
 
 TEST_F(OutOfMemory, LetsASimulationGoOnAfterADeclarationThatFailed) {
-    const EffectSet few{Effect::motion, Effect::culling};
+    const EffectSet few{Effect::motion};
     const std::size_t failures = runOutOfMemory(
         [&] {
             auto simulation = std::make_unique<Simulated>(smallSceneEffects(few));
@@ -265,7 +265,7 @@ TEST_F(OutOfMemory, LetsASimulationGoOnAfterADeclarationThatFailed) {
             simulation.declare(smallSceneEffects(kSimulated));
             expectValidAfter(1, simulation);
         });
-    EXPECT_GT(failures, 15U);  // with libc++ 17
+    EXPECT_GT(failures, 20U);
 }
 
 }  // namespace
