@@ -34,7 +34,7 @@ function(hashphase_own_target target)
     endif()
     # Contracted multiply-adds would make results depend on the machine that the library is built for, and a
     # box would no longer be filed where it is looked for. MSVC makes none since Visual Studio 2022. Nor may
-    # what else is built tell the libraries to leave NaN, or the order of additions, out of account.
+    # what else is built tell the libraries to leave NaN, the order of additions or other threads out of account.
     if(MSVC)
         target_compile_options(
             ${target} PRIVATE /W4 /permissive- /Zc:__cplusplus /bigobj /utf-8 /fp:precise
@@ -44,11 +44,17 @@ function(hashphase_own_target target)
             target_compile_options(${target} PUBLIC /wd4251 /wd4275)
         endif()
     elseif(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+        set(falseAlarms "")
+        if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+            set(falseAlarms -Wno-restrict) # of text + std::string: its bug 105651
+        endif()
         target_compile_options(
             ${target}
             PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -fno-fast-math
                     -fno-finite-math-only -fno-unsafe-math-optimizations -ffp-contract=off
+                    -fthreadsafe-statics
                     $<$<CXX_COMPILER_ID:Clang,AppleClang>:-Wno-overlength-strings>
+                    ${falseAlarms}
                     $<$<BOOL:${HASHPHASE_WARNINGS_AS_ERRORS}>:-Werror>)
     endif()
 endfunction()

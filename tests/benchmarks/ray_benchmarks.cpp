@@ -342,28 +342,28 @@ std::vector<Benchmark> rayStepBenchmarks() {
         {"shot", "of up to 100 m across the terrain", rayOverTerrain, {"paper"}},
         {"stray", "of up to 100 m, most of which hit nothing", rayFromNowhere, {"piles"}}};
     std::vector<Benchmark> all;
-    for (const auto& [name, description, draw, scenes] : lengths) {
-        for (const std::string_view scene : scenes) {
+    for (const Length& length : lengths) {
+        for (const std::string_view scene : length.scenes) {
             for (const std::size_t count : {1U, 4U, 40U, 500U}) {
                 for (const Moves moves : {Moves::all, Moves::allTimed}) {
                     const bool isTimed = moves == Moves::allTimed;
-                    const std::string rays =
-                        std::to_string(count) + "-" + std::string(name) + "-" + std::string(scene);
-                    all.push_back({.name = (isTimed ? "step-and-rays-" : "rays-after-step-") + rays,
-                                   .group = "queries",
-                                   .description = std::to_string(count) + " rays " +
-                                                  std::string(description) + ", after each step" +
-                                                  (isTimed ? ", which is timed, too" : ""),
-                                   .operation = isTimed ? "step" : "ray",
-                                   .sizes = {300, 1'000, 3'000, 30'000},
-                                   .onRequest = true,
-                                   .admits = answersQueries,
-                                   .make = [=, draw = draw, makeScene = sceneNamed(scene)](
-                                               std::size_t objects, std::uint64_t seed) {
-                                       return std::make_unique<RayWorkload>(
-                                           makeScene(objects, seed), Question{}, draw, moves, count,
-                                           ~seed);
-                                   }});
+                    const std::string rays = std::to_string(count) + "-" +
+                                             std::string(length.name) + "-" + std::string(scene);
+                    all.push_back(
+                        {.name = (isTimed ? "step-and-rays-" : "rays-after-step-") + rays,
+                         .group = "queries",
+                         .description = std::to_string(count) + " rays " +
+                                        std::string(length.description) + ", after each step" +
+                                        (isTimed ? ", which is timed, too" : ""),
+                         .operation = isTimed ? "step" : "ray",
+                         .sizes = {300, 1'000, 3'000, 30'000},
+                         .onRequest = true,
+                         .admits = answersQueries,
+                         .make = [=, draw = length.draw, makeScene = sceneNamed(scene)](
+                                     std::size_t objects, std::uint64_t seed) {
+                             return std::make_unique<RayWorkload>(
+                                 makeScene(objects, seed), Question{}, draw, moves, count, ~seed);
+                         }});
                 }
             }
         }

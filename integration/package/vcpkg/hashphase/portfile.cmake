@@ -17,7 +17,6 @@ vcpkg_cmake_configure(
         -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
         -DHASHPHASE_BUILD_DEMOS=OFF
         -DHASHPHASE_BUILD_TESTS=OFF
-        -DHASHPHASE_WARNINGS_AS_ERRORS=OFF
 )
 vcpkg_cmake_install()
 vcpkg_copy_pdbs()
