@@ -18,10 +18,16 @@ newest_sources() {
     if [[ ${!variable-} ]]; then
         folder=${!variable}
         say "$1 is that of \$$variable"
-    elif [[ -d $folder ]] || {
-        GIT_TERMINAL_PROMPT=0 timeout 300 git clone -q --depth 1 --filter=blob:none --sparse "$2" "$folder.part" &&
-            git -C "$folder.part" sparse-checkout set "$4" && mv "$folder.part" "$folder"
-    } >&2; then
+    elif {
+        export GIT_TERMINAL_PROMPT=0
+        if [[ -d $folder ]]; then
+            timeout 300 git -C "$folder" fetch -q --depth 1 && git -C "$folder" reset -q --hard FETCH_HEAD
+        else
+            rm -rf "$folder.part" &&
+                timeout 300 git clone -q --depth 1 --filter=blob:none --sparse "$2" "$folder.part" &&
+                git -C "$folder.part" sparse-checkout set "$4" && mv "$folder.part" "$folder"
+        fi
+    } >&2 || [[ -d $folder ]]; then
         say "$1 is that of $2, of $(git -C "$folder" log -1 --format=%cs)"
     else
         folder=$root/build/sources/original-$1
@@ -62,27 +68,28 @@ install_bullet() {
 
 # In single precision, Bullet is a part of the same build; in double precision, it is installed.
 check_bullet() {
-    local outcome=0 counts=()
+    local passed=0 failed=0 skipped=0 outcome=0 counts
     bullet=$(newest_sources bullet https://github.com/bulletphysics/bullet3.git bullet src)
     eigen=$(newest_sources eigen https://gitlab.com/libeigen/eigen.git eigen3 Eigen)
     programs=(bullet)
     build_newest float32 -DBullet_SOURCES="$bullet" -DBULLET2_MULTITHREADING=OFF -DHASHPHASE_BUILD_DEMOS=OFF
-    counts+=("$(run_programs "$build/hashphase")") || outcome=1
+    counts=$(run_programs "$build/hashphase") || outcome=1
+    add_counts "$counts"
     programs=(bullet-float64)
     install_bullet installed -DBULLET2_MULTITHREADING=ON
     # Bullet is static there, and hashphase shared.
     build_newest float64 -DCMAKE_PREFIX_PATH="$build/prefix" -DCMAKE_CXX_STANDARD=23 -DBUILD_SHARED_LIBS=ON \
         -DHASHPHASE_BUILD_DEMOS=OFF
-    counts+=("$(run_programs "$build/hashphase")") || outcome=1
+    counts=$(run_programs "$build/hashphase") || outcome=1
+    add_counts "$counts"
     programs=(golden broadphase bullet clients property)
     build_newest clang -DBullet_SOURCES="$bullet" -DBULLET2_MULTITHREADING=ON -DHASHPHASE_BUILD_DEMOS=ON \
         -DGTest_SOURCES=/usr/src/googletest -DCMAKE_DISABLE_FIND_PACKAGE_rapidcheck=ON \
         -DCMAKE_CXX_STANDARD=26 -DCMAKE_C_COMPILER=clang-19 -DCMAKE_CXX_COMPILER=clang++-19 \
         -DCMAKE_CXX_FLAGS=-stdlib=libc++
     cmake --build "$build" --target hashphase hashphase-compare >&2
-    counts+=("$(run_programs "$build/hashphase")") || outcome=1
-    printf '%s\n' "${counts[@]}" |
-        awk '{ passed += $1; failed += $3; skipped += $5 }
-            END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped }' >&2
+    counts=$(run_programs "$build/hashphase") || outcome=1
+    add_counts "$counts"
+    say "with the newest Bullet: $passed passed, $failed failed, $skipped skipped"
     return "$outcome"
 }

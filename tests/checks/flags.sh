@@ -5,14 +5,14 @@
 # compiled once for each set of options, and linked with each build of the libraries; all have to print the
 # same, or not to link and say why.
 
-tools+=(nm:binutils i686-linux-gnu-g++:g++-i686-linux-gnu)
+tools+=(nm:binutils clang++-19:clang-19 i686-linux-gnu-g++:g++-i686-linux-gnu)
 
 # Builds of the libraries: name, build type, options.
 flags_libraries() {
     cat <<'BUILDS'
 plain Release -O2
 fast Release -O2 -march=native -ffast-math -fno-rtti -DEIGEN_MAX_ALIGN_BYTES=0
-bare Debug -O0 -fno-exceptions -mavx2 -mfma -fshort-enums -D_GLIBCXX_ASSERTIONS
+bare Debug -O0 -fno-exceptions -fno-threadsafe-statics -mavx2 -mfma -fshort-enums -D_GLIBCXX_ASSERTIONS
 BUILDS
 }
 
@@ -29,6 +29,8 @@ unaligned-unoptimised -O0 -DEIGEN_DONT_ALIGN -mavx2 -mfma
 row-major -O1 -DEIGEN_DEFAULT_TO_ROW_MAJOR -funsigned-char -fshort-enums
 asserting -O1 -DHASHPHASE_ENABLE_ASSERTS=1 -D_GLIBCXX_ASSERTIONS
 fast -O3 -march=native -ffast-math
+fast-small -Os -ffast-math
+fast-unoptimised -O0 -ffast-math
 PROGRAMS
 }
 
@@ -46,8 +48,8 @@ flags_run() {
     for component in bullet "${flags_link[@]}"; do
         archives+=("$(find "$folder/$1" -name "libhashphase_$component.a")")
     done
-    g++ "$2" -o "$3" "${archives[@]}" -lBulletDynamics -lBulletCollision -lLinearMath -pthread || return
-    "$3"
+    g++ -Wl,--gc-sections "$2" -o "$3" "${archives[@]}" -lBulletDynamics -lBulletCollision -lLinearMath -pthread || return
+    timeout 60 "$3"
 }
 
 # flags_holds <name> <command>...: counts whether it succeeds.
@@ -92,6 +94,14 @@ flags_refuses() {
 flags_refuses_program() {
     flags_compile "$2" flag_traps "$folder/refused.o" "${@:3}" || return
     flags_refuses plain "$folder/refused.o" "$1"
+}
+
+# flags_refuses_to_compile <words> <compiler> <option>...
+flags_refuses_to_compile() {
+    if flags_compile "$2" flag_traps "$folder/refused.o" "${@:3}" 2>"$folder/refused.txt"; then
+        return 1
+    fi
+    grep -q "$1" "$folder/refused.txt"
 }
 
 check_flags() {
@@ -140,9 +150,16 @@ OPTIONS
     done
 
     flags_holds "refusing _GLIBCXX_DEBUG" \
-        flags_refuses_program librariesAreCompiledWith_GLIBCXX_DEBUG g++ -O0 -D_GLIBCXX_DEBUG
+        flags_refuses_program librariesAreCompiledWith_GLIBCXX_DEBUG g++ -O0 -D_GLIBCXX_DEBUG \
+        -fdata-sections
     flags_holds "refusing _GLIBCXX_USE_CXX11_ABI=0" \
         flags_refuses_program librariesAreCompiledWithout_GLIBCXX_USE_CXX11_ABI g++ -O0 -D_GLIBCXX_USE_CXX11_ABI=0
+    # Both ways round: as the compiler says it, and as users are told to.
+    flags_holds "refusing clang++-19 -ffast-math" \
+        flags_refuses_to_compile 'needs infinity and NaN' clang++-19 -O2 -ffast-math
+    flags_holds "compiling flag_traps by clang++-19" flags_compile clang++-19 flag_traps \
+        "$folder/flag_traps-clang.o" -O2 -ffast-math -fno-finite-math-only
+    flags_holds "flag_traps of clang++-19 with plain libraries" flags_agrees plain flag_traps clang
     # As -m32.
     flags_holds "refusing 32 bits" flags_refuses_program 'incompatible with i386:x86-64' \
         i686-linux-gnu-g++ -O1 -msse2 -mfpmath=sse

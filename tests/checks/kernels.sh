@@ -2,18 +2,18 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # tests/check takes the packages, and has the root
 #
-# Sourced by tests/check. What of the libraries knows instructions is compiled for 64-bit ARM, and warns of
-# nothing; tests/check arm64 runs it.
+# Sourced by tests/check. The kernels, and a source of each other file that knows instructions, are compiled
+# for 64-bit ARM, and warn of nothing; tests/check arm64 runs them.
 
 tools+=(aarch64-linux-gnu-g++:g++-aarch64-linux-gnu)
 
 check_kernels() {
     local source passed=0 failed=0
-    for source in kernels_neon kernels_scalar dispatch; do
+    for source in simd/kernels_neon simd/kernels_scalar simd/dispatch pairs/pair_state; do
         if aarch64-linux-gnu-g++ -std=c++20 -O3 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror \
             -DHASHPHASE_HAS_NEON_KERNELS=1 -DHASHPHASE_ENABLE_ASSERTS=1 -DHASHPHASE_SHARED=0 \
             -ffp-contract=off -fno-trapping-math -isystem /usr/include/eigen3 -I"$root" \
-            -c "$root/broadphase/simd/$source.cpp" -o /dev/null; then
+            -c "$root/broadphase/$source.cpp" -o /dev/null; then
             passed=$((passed + 1))
         else
             failed=$((failed + 1))

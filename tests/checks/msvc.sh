@@ -13,7 +13,8 @@ libraries+=(libc++-19-dev libclang-common-19-dev mingw-w64-x86-64-dev)
 as_msvc() {
     local llvm=/usr/lib/llvm-19
     clang++-19 --target=x86_64-pc-windows-msvc -fms-extensions -fms-compatibility \
-        -fms-compatibility-version=19.40 -std=c++20 -DHASHPHASE_SHARED=1 -Werror -Wall -Wextra -Wpedantic \
+        -fms-compatibility-version=19.40 -std=c++20 -DHASHPHASE_SHARED=1 \
+        -DHASHPHASE_HAS_SSE2_KERNELS=1 -DHASHPHASE_HAS_AVX_KERNELS=1 -Werror -Wall -Wextra -Wpedantic \
         -Wconversion -Wshadow -Wno-pragma-once-outside-header -nostdinc++ -isystem "$llvm/include/c++/v1" \
         -isystem "$llvm/lib/clang/19/include" -isystem /usr/share/mingw-w64/include \
         -isystem /usr/include/eigen3 -isystem /usr/include/bullet -I"$root" "$@"

@@ -13,7 +13,8 @@ private_apt() {
     local apt=(apt-get -q -o Dir::State::lists="$lists/state" -o Dir::Etc::sourceparts="$lists"
         -o Dir::Etc::sourcelist="$lists/servers.sources" -o APT::Sandbox::User=root
         -o APT::Architecture="$2" -o APT::Architectures="$2")
-    if [[ ! -d $lists/state ]]; then
+    # What the servers had a day ago they may have no longer.
+    if [[ ! $(find "$lists/updated" -mmin -1440 2>/dev/null) ]]; then
         mkdir -p "$lists/state"
         if compgen -G '/etc/apt/sources.list.d/*.sources' >/dev/null; then
             sed "s/^Types:.*/Types: $1/" /etc/apt/sources.list.d/*.sources >"$lists/servers.sources"
@@ -21,7 +22,8 @@ private_apt() {
         if [[ -s /etc/apt/sources.list ]]; then
             sed -n "s/^deb /$1 /p" /etc/apt/sources.list >"$lists/servers.list"
         fi
-        "${apt[@]}" update
+        "${apt[@]}" -o APT::Update::Error-Mode=any update || return
+        touch "$lists/updated"
     fi
     "${apt[@]}" "${@:3}"
 }
@@ -32,6 +34,7 @@ source_package() {
     local folder=$root/build/sources/$1
     if [[ ! -d $folder ]]; then
         say "downloading the sources of $1"
+        rm -rf "$folder.part"
         mkdir -p "$folder.part"
         (
             cd "$folder.part" &&
@@ -46,9 +49,11 @@ source_package() {
 # architecture, unpacked; they bring no others along.
 foreign_packages() {
     local folder=$root/build/sources/$1
-    if [[ ! -d $folder ]]; then
+    if [[ $(cat "$folder/names" 2>/dev/null) != "${*:2}" ]]; then
         say "downloading packages for $1"
+        rm -rf "$folder" "$folder.part"
         mkdir -p "$folder.part/packages"
+        echo "${*:2}" >"$folder.part/names"
         (
             cd "$folder.part/packages" && private_apt deb "$1" download "${@:2}" &&
                 for package in *.deb; do dpkg -x "$package" ..; done && mv "$folder.part" "$folder"
@@ -61,11 +66,11 @@ foreign_packages() {
 # that `leaves_out` names, and shows what it said if one fails.
 run_part() {
     local log=$1.$2.log
-    GTEST_TOTAL_SHARDS=4 GTEST_SHARD_INDEX=$2 "${@:3}" "$1" --gtest_brief=1 \
-        --gtest_filter="-${leaves_out-}" >"$log" 2>&1 || {
+    GTEST_TOTAL_SHARDS=4 GTEST_SHARD_INDEX=$2 timeout 1200 "${@:3}" "$1" --gtest_brief=1 \
+        --gtest_filter="-${leaves_out-}" >"$log" 2>&1 </dev/null || {
         local status=$?
         cat "$log"
-        echo "${1##*/}: exit status $status"
+        echo "${1##*/}: exit status $status" # 124 where it took twenty minutes
         return 1
     }
 }
@@ -76,7 +81,7 @@ run_programs() {
     local outcome=0 name
     local -a built=()
     for name in "${programs[@]}"; do
-        built+=("$(find "$1/tests" -type f \( -name "$name-tests" -o -name "$name-tests.*[em]" \))")
+        built+=("$(find "$1" -type f \( -name "$name-tests" -o -name "$name-tests.*[em]" \))")
     done
     say "running ${programs[*]/%/-tests}"
     export leaves_out
@@ -87,8 +92,17 @@ run_programs() {
     cat "${built[@]/%/.0.log}" "${built[@]/%/.1.log}" "${built[@]/%/.2.log}" "${built[@]/%/.3.log}" | awk '
         /^\[  PASSED  \]/ { passed += $4 }
         /^\[  SKIPPED \] [0-9]+ test/ { skipped += $4 }
-        /^\[  FAILED  \] .* \([0-9]+ ms\)$/ { ++failed }
+        /^\[  FAILED  \] .* \([0-9]+ ms\)\r?$/ { ++failed }
         END { printf "%d passed, %d failed, %d skipped\n", passed, failed, skipped; exit passed == 0 }' ||
         outcome=1
     return "$outcome"
+}
+
+# add_counts <counts>: adds what run_programs said to `passed`, `failed` and `skipped`.
+add_counts() {
+    local words
+    read -ra words <<<"$1"
+    passed=$((passed + words[0]))
+    failed=$((failed + words[2]))
+    skipped=$((skipped + words[4]))
 }

@@ -14,10 +14,13 @@ web=$root/build/check-web
 web_prefix=$web/prefix
 web_files=$root/tests/checks/web
 
-# web_once <name> <command>...: runs it where it has not yet ended well.
+# web_once <name> <command>...: runs it where it has not yet ended well, with these files.
 web_once() {
-    [[ -f $web/$1.done ]] && return
+    if [[ -f $web/$1.done && ! $(find "$web_files" "${web_files}.sh" -type f ! -name run.mjs -newer "$web/$1.done") ]]; then
+        return
+    fi
     say "building $1 for WebAssembly"
+    rm -rf "${web:?}/$1"
     mkdir -p "$web/$1"
     "${@:2}" >&2
     touch "$web/$1.done"
@@ -86,7 +89,7 @@ web_build() {
     say "building build/check-web/$1"
     CXXFLAGS=$2 web_cmake "$1" "$root" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DHASHPHASE_ASSERTS=ON \
         -DHASHPHASE_BUILD_DEMOS=OFF -DHASHPHASE_BUILD_BENCHMARKS=OFF -DHASHPHASE_QUICK_BUILD=ON \
-        -DHASHPHASE_WARNINGS_AS_ERRORS=OFF -DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST
+        -DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST
     cmake --build "$web/$1" --target "${programs[@]/%/-tests}" >&2
 }
 

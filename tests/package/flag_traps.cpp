@@ -145,6 +145,8 @@ void moveWhatIsNoNumber(World<Scalar>& world) {
             std::printf("%d", hasNan(world.grid.box(world.ids[i])) ? 1 : 0);
         }
         std::printf("\n");
+        printFound("before the update", world, RayRegion<Scalar>({0, 20, 20}, {64, 20, 20}));
+        printFound("balls", world, SphereRegion<Scalar>({32, 20, 20}, Scalar(20)));
         printPairs("frame", world);
     }
     printFound("all", world, BoxRegion<Scalar>{boxAround<Scalar>({32, 32, 32}, infinity)});
