@@ -64,7 +64,8 @@ template <class Scalar>
 /// axis. False when any of the twelve numbers is NaN. Written without branches: where the test matters, no
 /// branch can be predicted.
 template <class Scalar>
-[[nodiscard]] inline bool overlaps(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool overlaps(const Aabb<Scalar>& a,
+                                                            const Aabb<Scalar>& b) noexcept {
     const Scalar* aMin = a.min().data();
     const Scalar* aMax = a.max().data();
     const Scalar* bMin = b.min().data();
@@ -95,15 +96,11 @@ template <class Scalar>
 
 /// True when any of the six coordinates is NaN.
 template <class Scalar>
-[[nodiscard]] inline bool hasNan(const Aabb<Scalar>& box) noexcept {
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool hasNan(const Aabb<Scalar>& box) noexcept {
     const Scalar* low = box.min().data();
     const Scalar* high = box.max().data();
-    const auto areUnordered = [](const Scalar& a, const Scalar& b) {
-        return HASHPHASE_OVERLOOKS_NAN ? detail::isNan(a) || detail::isNan(b)
-                                       : std::isunordered(a, b);
-    };
-    return areUnordered(low[0], high[0]) || areUnordered(low[1], high[1]) ||
-           areUnordered(low[2], high[2]);
+    return detail::areUnordered(low[0], high[0]) || detail::areUnordered(low[1], high[1]) ||
+           detail::areUnordered(low[2], high[2]);
 }
 
 namespace detail {

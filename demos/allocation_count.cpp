@@ -4,6 +4,8 @@
 
 #include <demos/allocation_count.hpp>
 
+#include <broadphase/core/compiler.hpp>
+
 #include <atomic>
 #include <cstdlib>
 #include <cstring>
@@ -24,7 +26,7 @@ std::size_t allocationCount() noexcept {
 }  // namespace hashphase::demos
 
 // Not inlined: compilers take free() for a mismatch where they see only one half of the pair.
-[[gnu::noinline]] void* operator new(std::size_t size) {
+[[HASHPHASE_NO_INLINE]] void* operator new(std::size_t size) {
     hashphase::demos::count.fetch_add(1, std::memory_order_relaxed);
     if (void* memory = std::malloc(size == 0 ? 1 : size)) {
         return memory;
@@ -32,7 +34,7 @@ std::size_t allocationCount() noexcept {
     throw std::bad_alloc();
 }
 // Before an aligned block stands where what was allocated begins. (Windows has no aligned_alloc().)
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+[[HASHPHASE_NO_INLINE]] void* operator new(std::size_t size, std::align_val_t alignment) {
     hashphase::demos::count.fetch_add(1, std::memory_order_relaxed);
     std::size_t space = size + static_cast<std::size_t>(alignment);
     if (void* const memory = std::malloc(sizeof(memory) + space)) {
@@ -43,20 +45,20 @@ std::size_t allocationCount() noexcept {
     }
     throw std::bad_alloc();
 }
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
+[[HASHPHASE_NO_INLINE]] void operator delete(void* memory) noexcept {
     std::free(memory);
 }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
+[[HASHPHASE_NO_INLINE]] void operator delete(void* memory, std::size_t) noexcept {
     std::free(memory);
 }
-[[gnu::noinline]] void operator delete(void* block, std::align_val_t) noexcept {
+[[HASHPHASE_NO_INLINE]] void operator delete(void* block, std::align_val_t) noexcept {
     if (block != nullptr) {
         void* memory = nullptr;
         std::memcpy(&memory, static_cast<char*>(block) - sizeof(memory), sizeof(memory));
         std::free(memory);
     }
 }
-[[gnu::noinline]] void operator delete(void* block, std::size_t,
-                                       std::align_val_t alignment) noexcept {
+[[HASHPHASE_NO_INLINE]] void operator delete(void* block, std::size_t,
+                                             std::align_val_t alignment) noexcept {
     operator delete(block, alignment);
 }

@@ -20,8 +20,10 @@
 // HASHPHASE_HAS_EXCEPTIONS    1 where this code is compiled with exceptions (without -fno-exceptions)
 // HASHPHASE_STANDARD_LIBRARY  the name of a symbol that says which standard library this is, where programs
 //                             and libraries may be at odds about it (core/same_library.hpp)
-// HASHPHASE_KEPT              of a variable that the compiler keeps though nothing uses it
+// HASHPHASE_KEPT              of a variable that compiler and linker keep though nothing uses it
 // HASHPHASE_HAS_RTTI          1 where it may ask for types when it runs (without -fno-rtti)
+// HASHPHASE_IS_OPTIMISED      1 where this code is optimised; MSVC does not say, so where it has no run-time
+//                             library for debugging
 // HASHPHASE_OVERLOOKS_NAN     1 where comparisons may be compiled as if no number were NaN or infinite
 //                             (-ffast-math); isNan() and isFinite() look at the bits then
 
@@ -44,7 +46,11 @@
 #define HASHPHASE_ALWAYS_INLINE gnu::always_inline
 #define HASHPHASE_NO_INLINE gnu::noinline
 #define HASHPHASE_FLATTEN gnu::flatten
+#if defined(__ELF__) && __has_cpp_attribute(gnu::retain)
+#define HASHPHASE_KEPT gnu::used, gnu::retain
+#else
 #define HASHPHASE_KEPT gnu::used
+#endif
 #elif defined(_MSC_VER)
 #define HASHPHASE_ALWAYS_INLINE msvc::forceinline
 #define HASHPHASE_NO_INLINE msvc::noinline
@@ -104,7 +110,21 @@
 #else
 #define HASHPHASE_HAS_RTTI 0
 #endif
+#if defined(__clang__) || defined(__GNUC__)
+#if defined(__OPTIMIZE__)
+#define HASHPHASE_IS_OPTIMISED 1
+#else
+#define HASHPHASE_IS_OPTIMISED 0
+#endif
+#elif defined(_DEBUG)
+#define HASHPHASE_IS_OPTIMISED 0
+#else
+#define HASHPHASE_IS_OPTIMISED 1
+#endif
 #if (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
+#if defined(__clang__)  // takes even an infinity that a function returns for undefined
+#error "hashphase needs infinity and NaN: after -ffast-math, Clang needs -fno-finite-math-only."
+#endif
 #define HASHPHASE_OVERLOOKS_NAN 1
 #else
 #define HASHPHASE_OVERLOOKS_NAN 0
@@ -164,6 +184,12 @@ template <std::floating_point Scalar>
 template <std::floating_point Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool isFinite(const Scalar& x) noexcept {
     return HASHPHASE_OVERLOOKS_NAN ? magnitudeBits(x) < kInfinityBits<Scalar> : std::isfinite(x);
+}
+/// std::isunordered(), with -ffast-math as well.
+template <std::floating_point Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool areUnordered(const Scalar& a,
+                                                                const Scalar& b) noexcept {
+    return HASHPHASE_OVERLOOKS_NAN ? isNan(a) || isNan(b) : std::isunordered(a, b);
 }
 
 /// Whether dynamic_cast may ask an object, which has virtual functions: its class, and this code, were

@@ -56,8 +56,12 @@ struct Grid<Scalar>::VisitReader {
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint32_t proxyIndex = store.proxies.waiting[k];
             if (store.proxies.isAlive(proxyIndex)) {
+                const Aabb<Scalar>& box = store.proxies.records[proxyIndex].box;
+                if (HASHPHASE_OVERLOOKS_NAN && hasNan(box)) {
+                    continue;  // key() might find it
+                }
                 ++cost.boxesTested;
-                const Scalar key = regions[i].key(store.proxies.records[proxyIndex].box);
+                const Scalar key = regions[i].key(box);
                 if (detail::isWanted(key, collectors[i])) {
                     ++cost.hits;
                     collectors[i].add(store.proxies.idOf(proxyIndex), key);

@@ -6,6 +6,8 @@
 #include <demos/scenes/input_error.hpp>
 #include <demos/system/process.hpp>
 
+#include <broadphase/core/compiler.hpp>
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -52,11 +54,9 @@ std::vector<std::string> takeRest(std::vector<std::string>& arguments) {
 }
 
 void warnOfSlowBuild(Console& console) {
-#ifndef __OPTIMIZE__
-    console.err << "hashphase: warning: built without optimisation; the times mean nothing.\n";
-#else
-    static_cast<void>(console);
-#endif
+    if (!HASHPHASE_IS_OPTIMISED) {
+        console.err << "hashphase: warning: built without optimisation; the times mean nothing.\n";
+    }
 }
 
 // Instead of how many values CLI11 wants.

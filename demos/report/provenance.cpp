@@ -4,6 +4,7 @@
 #include <demos/console/program.hpp>
 #include <demos/system/process.hpp>
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/kernels.hpp>
 
@@ -27,9 +28,7 @@ Provenance gatherProvenance(const std::string& commandLine) {
 #endif
     provenance.hasAssertions = HASHPHASE_ENABLE_ASSERTS != 0;
     provenance.instructionSet = detail::nameOf(detail::instructionSet());
-#ifdef __OPTIMIZE__
-    provenance.optimised = true;
-#endif
+    provenance.optimised = HASHPHASE_IS_OPTIMISED != 0;
     provenance.cpu = processorName();
     provenance.cores = std::thread::hardware_concurrency();
     provenance.loadAverage = loadAverage();

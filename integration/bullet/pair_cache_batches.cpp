@@ -220,7 +220,7 @@ void PairCache::vacateInParts(std::span<const BulletProxyPair> died, btDispatche
         }
     }
     if (mustRetire.load(std::memory_order_relaxed)) {
-        const auto makeRoom = [&] {
+        {
             const detail::OnFailure putBack([&] {
                 for (std::size_t i = 0; i < died.size(); ++i) {
                     if (found[i] != kNone) {
@@ -229,8 +229,7 @@ void PairCache::vacateInParts(std::span<const BulletProxyPair> died, btDispatche
                 }
             });
             detail::ensureCapacity(retired_, retired_.size() + died.size());
-        };
-        makeRoom();
+        }
         for (std::size_t i = 0; i < died.size(); ++i) {
             if (found[i] != kNone) {
                 retire(pairs_[static_cast<int>(found[i])], died[i].ids(), dispatcher);

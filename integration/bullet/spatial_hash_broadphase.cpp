@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <broadphase/core/caught.hpp>
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/limits.hpp>
@@ -93,7 +94,10 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
     detail::checkCount(static_cast<std::size_t>(lastUniqueId_) + 1, std::numeric_limits<int>::max(),
                        "All unique ids are used up. Without proxies, resetPool() counts anew.");
     Proxy& proxy = place({aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask});
-    const detail::OnFailure destroy([&] { destroyProxy(&proxy, dispatcher); });
+    const detail::OnFailure destroy([&] {
+        // What a pair cache of the user's throws as well gives way to what has failed first.
+        static_cast<void>(detail::exceptionOf([&] { destroyProxy(&proxy, dispatcher); }));
+    });
     if (isEager(proxy, dispatcher)) {
         findPairsNow(proxy, dispatcher);
     } else {

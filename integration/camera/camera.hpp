@@ -95,6 +95,7 @@ public:
 
     /// Returns the part of the rectangle between two corners, in any order, that lies in the viewport, in
     /// normalised device coordinates. It may have no area. isEmpty() when no part lies in the viewport.
+    // A template, as viewProjection() is, so that the library has no result that is aligned by its options.
     template <class Rectangle = ScreenRectangle<Scalar>>
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Rectangle rectangleBetween(const Pixel& a,
                                                                       const Pixel& b) const {

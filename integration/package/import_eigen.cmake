@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Zlib
 #
 # Makes hashphase::imported-eigen of Eigen3::Eigen, whether that is imported or a part of the same build,
-# whose targets cannot be named in what is installed. Any version since 3.3 will do, also 5 and later.
+# whose targets cannot be named in what is installed. Any version since 3.4 will do, also 5 and later.
 # Used by the build and by the installed package alike, after either has looked for Eigen.
 
 if(NOT TARGET hashphase::imported-eigen)

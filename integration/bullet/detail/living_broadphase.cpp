@@ -3,16 +3,20 @@
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <array>
+#include <cstddef>
 #include <mutex>
+#include <new>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
 constinit LivingBroadphase* newestLiving = nullptr;
 
-// Made with the first broadphase, and so there until the last one has gone.
+// Never destroyed: the last broadphase may be a static object that goes after all of ours.
 std::mutex& livingMutex() noexcept {
-    static std::mutex mutex;
+    alignas(std::mutex) static std::array<std::byte, sizeof(std::mutex)> memory;
+    static std::mutex& mutex = *new (memory.data()) std::mutex;
     return mutex;
 }
 
