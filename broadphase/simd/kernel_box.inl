@@ -347,8 +347,9 @@ template <bool kIsDense, class Scalar, class Query>
 
 // Finds all entries of a run that overlap the box, and adds to `tested` how many it tested.
 template <bool kIsDense, class Scalar, class Query>
-bool scan(const Level<Scalar>& level, const Query& query, Run run, Row row, PairSink& found,
-          std::uint64_t& tested) {
+[[HASHPHASE_ALWAYS_INLINE]] inline bool scan(const Level<Scalar>& level, const Query& query,
+                                             Run run, Row row, PairSink& found,
+                                             std::uint64_t& tested) {
     if (level.sortedCount > 0) {
         return sweep<kIsDense>(level, query, run, row, found, tested);
     }

@@ -28,7 +28,8 @@ struct FirstBoxes {
 
 // With no branch in between that could be mispredicted.
 template <int kRows, class Scalar>
-FirstBoxes testFirst(const Level<Scalar>& level, std::uint32_t entry, const Run* runs) {
+[[HASHPHASE_ALWAYS_INLINE]] inline FirstBoxes testFirst(const Level<Scalar>& level,
+                                                        std::uint32_t entry, const Run* runs) {
     const Lanes<Pack<Scalar>, Scalar> box(level.columns, entry);
     FirstBoxes first;
     for (int k = 0; k < kRows; ++k) {
@@ -45,8 +46,9 @@ FirstBoxes testFirst(const Level<Scalar>& level, std::uint32_t entry, const Run*
 // Tests what the runs have beyond their first boxes, and what has wrapped around. Returns how many boxes
 // were tested beyond those of the runs; of sorted buckets fewer are, and the number is negative, modulo 2^64.
 template <class Scalar, bool kIsDense, int kRows, class Query>
-std::uint64_t joinRests(const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query& query,
-                        std::uint32_t entry, const Run* runs, bool wraps, PairSink& found) {
+[[HASHPHASE_ALWAYS_INLINE]] inline std::uint64_t joinRests(
+    const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query& query, std::uint32_t entry,
+    const Run* runs, bool wraps, PairSink& found) {
     std::uint64_t tested = 0;
     for (int k = 0; k < kRows; ++k) {
         const Run rest = {runs[k].first + kWidth, runs[k].last};

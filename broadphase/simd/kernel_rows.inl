@@ -22,7 +22,7 @@ struct CellBlock {
 
     /// Calls visit(row) for each of its rows. Returns false as soon as visit() does.
     template <class Visit>
-    bool forRows(const Visit& visit) const {
+    [[HASHPHASE_ALWAYS_INLINE]] bool forRows(const Visit& visit) const {
         for (std::int32_t z = low[2]; z <= high[2]; ++z) {
             for (std::int32_t y = low[1]; y <= high[1]; ++y) {
                 if (!visit(Row{y, z})) {

@@ -17,7 +17,7 @@
 //     compress(mask, numbers, to)  where it is there, writes numbers[k] to `to` for every bit k of the
 //                      mask, which has kWidth, and may write so many; reads no others
 //   WidePack<Scalar>   the same for long runs, perhaps wider
-//   isApart(a, b)      whether two padded boxes do not overlap
+//   isApart(a, b)      1 where two padded boxes do not overlap, else 0
 //   padCorners(corners, box)  makes `box` of six numbers, the min corner first
 //   fitsEdge(level, box)  whether no edge of the padded box is longer than the level's largest
 //   quantiseCorners(level, box, low)  sets `low` to the cell of the box's min corner and returns
@@ -64,28 +64,28 @@ struct Run {
 template <class Scalar>
 void findRange(const Scalar* column, std::uint32_t first, std::uint32_t last, Scalar* least,
                Scalar* greatest) {
-    constexpr std::uint32_t width = 8;
-    Scalar low[width];
-    Scalar high[width];
-    for (std::uint32_t k = 0; k < width; ++k) {
-        low[k] = column[first];
-        high[k] = column[first];
-    }
+    using Lanes = WidePack<Scalar>;
+    constexpr std::uint32_t width = Lanes::kWidth;
+    auto low = Lanes::broadcast(column[first]);
+    auto high = low;
     for (; first + width <= last; first += width) {
-        for (std::uint32_t k = 0; k < width; ++k) {
-            low[k] = column[first + k] < low[k] ? column[first + k] : low[k];
-            high[k] = column[first + k] > high[k] ? column[first + k] : high[k];
-        }
+        const auto numbers = Lanes::load(column + first);
+        low = Lanes::least(numbers, low);
+        high = Lanes::greatest(numbers, high);
+    }
+    Scalar lows[width];
+    Scalar highs[width];
+    Lanes::store(lows, low);
+    Lanes::store(highs, high);
+    *least = lows[0];
+    *greatest = highs[0];
+    for (std::uint32_t k = 1; k < width; ++k) {
+        *least = lows[k] < *least ? lows[k] : *least;
+        *greatest = highs[k] > *greatest ? highs[k] : *greatest;
     }
     for (; first < last; ++first) {
-        low[0] = column[first] < low[0] ? column[first] : low[0];
-        high[0] = column[first] > high[0] ? column[first] : high[0];
-    }
-    *least = low[0];
-    *greatest = high[0];
-    for (std::uint32_t k = 1; k < width; ++k) {
-        *least = low[k] < *least ? low[k] : *least;
-        *greatest = high[k] > *greatest ? high[k] : *greatest;
+        *least = column[first] < *least ? column[first] : *least;
+        *greatest = column[first] > *greatest ? column[first] : *greatest;
     }
 }
 
@@ -98,7 +98,7 @@ std::size_t selectApart(const IndexPair* pairs, std::size_t count, const std::ui
         const std::uint32_t a = order != nullptr ? order[pair.a] : pair.a;
         const std::uint32_t b = order != nullptr ? order[pair.b] : pair.b;
         apart[selected] = pair;
-        selected += isApart(boxes[a], boxes[b]) ? 1 : 0;
+        selected += isApart(boxes[a], boxes[b]);
     }
     return selected;
 }

@@ -25,16 +25,21 @@ struct Pack<float> {
     }
 };
 
-inline bool isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
-    const __m128 one = _mm_cmp_ps(_mm_load_ps(a.low), _mm_load_ps(b.high), _CMP_LE_OQ);
-    const __m128 other = _mm_cmp_ps(_mm_load_ps(b.low), _mm_load_ps(a.high), _CMP_LE_OQ);
-    return _mm_movemask_ps(_mm_and_ps(one, other)) != 0xf;
+// Reckoned from the four bits: of a comparison Clang makes VTESTPS, which takes longer.
+inline std::uint32_t notAllOfFour(int mask) {
+    return (static_cast<std::uint32_t>(mask) + 1) >> 4 ^ 1;
 }
 
-inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
+inline std::uint32_t isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
+    const __m128 one = _mm_cmp_ps(_mm_load_ps(a.low), _mm_load_ps(b.high), _CMP_LE_OQ);
+    const __m128 other = _mm_cmp_ps(_mm_load_ps(b.low), _mm_load_ps(a.high), _CMP_LE_OQ);
+    return notAllOfFour(_mm_movemask_ps(_mm_and_ps(one, other)));
+}
+
+inline std::uint32_t isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
     const __m256d one = _mm256_cmp_pd(_mm256_load_pd(a.low), _mm256_load_pd(b.high), _CMP_LE_OQ);
     const __m256d other = _mm256_cmp_pd(_mm256_load_pd(b.low), _mm256_load_pd(a.high), _CMP_LE_OQ);
-    return _mm256_movemask_pd(_mm256_and_pd(one, other)) != 0xf;
+    return notAllOfFour(_mm256_movemask_pd(_mm256_and_pd(one, other)));
 }
 
 inline void padCorners(const float* corners, PaddedBox<float>& box) {

@@ -104,13 +104,13 @@ struct Pack<double> {
 template <class Scalar>
 using WidePack = Pack<Scalar>;
 
-inline bool isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
+inline std::uint32_t isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
     const uint32x4_t one = vcleq_f32(vld1q_f32(a.low), vld1q_f32(b.high));
     const uint32x4_t other = vcleq_f32(vld1q_f32(b.low), vld1q_f32(a.high));
     return vminvq_u32(vandq_u32(one, other)) == 0;
 }
 
-inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
+inline std::uint32_t isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
     uint64x2_t all = vcleq_f64(vld1q_f64(a.low), vld1q_f64(b.high));
     all = vandq_u64(all, vcleq_f64(vld1q_f64(b.low), vld1q_f64(a.high)));
     all = vandq_u64(all, vcleq_f64(vld1q_f64(a.low + 2), vld1q_f64(b.high + 2)));

@@ -30,7 +30,7 @@ template <class Scalar>
 using WidePack = Pack<Scalar>;
 
 template <class Scalar>
-bool isApart(const PaddedBox<Scalar>& a, const PaddedBox<Scalar>& b) {
+std::uint32_t isApart(const PaddedBox<Scalar>& a, const PaddedBox<Scalar>& b) {
     return ((a.low[0] <= b.high[0]) & (b.low[0] <= a.high[0]) & (a.low[1] <= b.high[1]) &
             (b.low[1] <= a.high[1]) & (a.low[2] <= b.high[2]) & (b.low[2] <= a.high[2])) == 0;
 }

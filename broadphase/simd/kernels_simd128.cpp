@@ -54,13 +54,13 @@ struct Pack<double> {
 template <class Scalar>
 using WidePack = Pack<Scalar>;
 
-inline bool isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
+inline std::uint32_t isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
     const v128_t one = wasm_f32x4_le(wasm_v128_load(a.low), wasm_v128_load(b.high));
     const v128_t other = wasm_f32x4_le(wasm_v128_load(b.low), wasm_v128_load(a.high));
     return !wasm_i32x4_all_true(wasm_v128_and(one, other));
 }
 
-inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
+inline std::uint32_t isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
     v128_t all = wasm_f64x2_le(wasm_v128_load(a.low), wasm_v128_load(b.high));
     all = wasm_v128_and(all, wasm_f64x2_le(wasm_v128_load(b.low), wasm_v128_load(a.high)));
     all = wasm_v128_and(all, wasm_f64x2_le(wasm_v128_load(a.low + 2), wasm_v128_load(b.high + 2)));

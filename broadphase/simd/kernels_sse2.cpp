@@ -56,13 +56,13 @@ struct Pack<double> {
 template <class Scalar>
 using WidePack = Pack<Scalar>;
 
-inline bool isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
+inline std::uint32_t isApart(const PaddedBox<float>& a, const PaddedBox<float>& b) {
     const __m128 one = _mm_cmple_ps(_mm_load_ps(a.low), _mm_load_ps(b.high));
     const __m128 other = _mm_cmple_ps(_mm_load_ps(b.low), _mm_load_ps(a.high));
     return _mm_movemask_ps(_mm_and_ps(one, other)) != 0xf;
 }
 
-inline bool isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
+inline std::uint32_t isApart(const PaddedBox<double>& a, const PaddedBox<double>& b) {
     __m128d all = _mm_cmple_pd(_mm_load_pd(a.low), _mm_load_pd(b.high));
     all = _mm_and_pd(all, _mm_cmple_pd(_mm_load_pd(b.low), _mm_load_pd(a.high)));
     all = _mm_and_pd(all, _mm_cmple_pd(_mm_load_pd(a.low + 2), _mm_load_pd(b.high + 2)));

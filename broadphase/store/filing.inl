@@ -59,7 +59,11 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
     const bool someRefuse = proxies.groupKinds.someRefuse();  // else nobody asks for kinds
     frame.mobileKinds = 0;
     frame.changedKinds = 0;
-    parallelFor(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    const auto stagePart = [&, what, observes, areShifted, someRefuse, count](std::size_t begin,
+                                                                              std::size_t end) {
+        PaddedBox<Scalar>* const now = frame.now.data();
+        PaddedBox<Scalar>* const before = hasPairs ? frame.before.data() : nullptr;
+        const std::uint32_t* const mobile = proxies.mobile.data();
         std::uint32_t idleCount = 0;
         std::uint32_t ownCalmCount = 0;
         std::uint32_t ownAllCalmCount = 0;
@@ -67,17 +71,16 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
         GroupKinds::Set changedKinds = 0;
         for (std::size_t i = begin; i < end; ++i) {
             if (i + kAhead < count) {
-                prefetch(&proxies.records[proxies.mobile[i + kAhead]]);
+                prefetch(&proxies.records[mobile[i + kAhead]]);
             }
-            Record& record = proxies.records[proxies.mobile[i]];
-            frame.now[i] =
-                padded(what == StageFor::queries ? record.box : proxies.standingBox(record));
-            if (hasPairs) {
-                frame.before[i] = areShifted ? padded(boxAtUpdate(proxies.mobile[i]))
-                                             : padded(proxies.standingBefore(record));
+            Record& record = proxies.records[mobile[i]];
+            now[i] = padded(what == StageFor::queries ? record.box : proxies.standingBox(record));
+            if (before != nullptr) {
+                before[i] = areShifted ? padded(boxAtUpdate(mobile[i]))
+                                       : padded(proxies.standingBefore(record));
             }
             const bool isIdle = this->isIdle(record);
-            const bool maySettle = observes && observe(proxies.mobile[i], record);
+            const bool maySettle = observes && observe(mobile[i], record);
             idleCount += isIdle ? 1 : 0;
             ownCalmCount += maySettle && !isIdle ? 1 : 0;
             ownAllCalmCount += observes && record.isCalm ? 1 : 0;
@@ -92,7 +95,8 @@ void Store<Scalar>::stage(ParallelFor parallelFor, StageFor what) {
         allCalmCount += ownAllCalmCount;
         frame.mobileKinds |= mobileKinds;
         frame.changedKinds |= changedKinds;
-    });
+    };
+    parallelFor(count, kGrain, stagePart);
     if (observes) {
         const std::size_t allCalm = allCalmCount.load();
         frame.someAreCalm = config.slack ? allCalm > 0 : 8 * allCalm > 7 * count;
