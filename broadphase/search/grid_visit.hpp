@@ -194,7 +194,8 @@ private:
     }
 
     // One of many that wants no more does not end the search of the others.
-    bool offer(Collector& collector, std::uint32_t proxyIndex, Scalar key) const {
+    [[HASHPHASE_ALWAYS_INLINE]] bool offer(Collector& collector, std::uint32_t proxyIndex,
+                                           Scalar key) const {
         collector.add(store.proxies.idOf(proxyIndex), key);
         return collector.limit() >= 0 || collectors.size() > 1;
     }

@@ -39,7 +39,7 @@ public:
           castMax_(castMax),
           callback_(callback) {}
 
-    [[nodiscard]] btScalar key(const Aabb<btScalar>& box) const {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] btScalar key(const Aabb<btScalar>& box) const {
         const btVector3 bounds[2] = {toBullet(box.min()) - castMax_,
                                      toBullet(box.max()) - castMin_};
         btScalar enter = 0;
