@@ -48,7 +48,8 @@ flags_run() {
     for component in bullet "${flags_link[@]}"; do
         archives+=("$(find "$folder/$1" -name "libhashphase_$component.a")")
     done
-    g++ -Wl,--gc-sections "$2" -o "$3" "${archives[@]}" -lBulletDynamics -lBulletCollision -lLinearMath -pthread || return
+    g++ -Wl,--gc-sections "$2" -o "$3" "${archives[@]}" -lBulletDynamics -lBulletCollision -lLinearMath \
+        -pthread || return
     timeout 60 "$3"
 }
 

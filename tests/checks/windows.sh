@@ -111,11 +111,9 @@ test_on_windows() {
             "$(on_windows "$windows/$name-$program/consumer.exe")"
     done
     build_for_windows "$name-examples" "$root/demos/examples" "${options[@]}"
-    if timeout 600 ctest --test-dir "$windows/$name-examples" --output-on-failure >&2; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-    fi
+    count_output "the examples with $name libraries" "100% tests passed, 0 tests failed out of 7" \
+        "$(timeout 600 ctest --test-dir "$windows/$name-examples" --output-on-failure |
+            tee /dev/stderr | grep 'tests passed')"
     configure_for_windows "$name" "$root" "${own[@]}" -DHASHPHASE_BUILD_TESTS=ON
     cmake --build "$windows/$name" --target "${programs[@]/%/-tests}" >&2
     counts=$(run_programs "$windows/$name" "$wine") || outcome=1

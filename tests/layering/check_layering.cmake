@@ -118,8 +118,8 @@ foreach(file IN LISTS files)
 endforeach()
 
 # The words that tell a compiler, a library, a processor or a system, and who may ask for them.
-string(CONCAT platforms "__(OPTIMIZE|GNUC|clang|GLIBC|GLIBCXX|LIBCPP|MINGW|SSE|AVX|SANITIZE|wasm|EMSCRIPTEN|linux|unix|APPLE|"
-       "ANDROID|x86_64|i386|aarch64|arm|ARM|cpp_|has_|STDC_IEC)|_(MSC_|MSVC|WIN32|M_[A-Z]|LIBCPP|CPPUNWIND|CPPRTTI)")
+string(CONCAT platforms "__(OPTIMIZE|GNUC|clang|GLIBC|GLIBCXX|LIBCPP|MINGW|SSE|AVX|SANITIZE|wasm|EMSCRIPTEN|linux|"
+       "unix|APPLE|ANDROID|x86_64|i386|aarch64|arm|ARM|cpp_|has_|STDC_IEC)|_(MSC_|MSVC|WIN32|M_[A-Z]|LIBCPP|CPPUNWIND|CPPRTTI)")
 string(CONCAT knowing "^(broadphase/core/compiler\\.hpp|broadphase/export\\.hpp|broadphase/simd/dispatch\\.cpp|"
        "demos/try/.*)$")
 file(GLOB_RECURSE others RELATIVE ${ROOT} ${ROOT}/demos/*.[hci]* ${ROOT}/tests/*.[hci]*)
