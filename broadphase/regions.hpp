@@ -61,17 +61,20 @@ public:
     /// Scalar; whether the box is in the ball is decided without that rounding.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         Scalar squared = 0;
+        Scalar scaledSquared = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const Scalar before = box.min()[axis] - center_[axis];
             const Scalar behind = center_[axis] - box.max()[axis];
             if (detail::isNan(before) || detail::isNan(behind)) {
                 return -1;
             }
-            const Scalar outside = std::max({before, behind, Scalar(0)}) * scale_;
+            const Scalar outside = std::max({before, behind, Scalar(0)});
             squared += outside * outside;
+            scaledSquared += (outside * scale_) * (outside * scale_);
         }
+        // The key is not scaled back: a divisor that is squared first, as by -ffast-math, would vanish.
         const Scalar reach = radius_ * scale_;
-        return reach >= 0 && squared <= reach * reach ? squared / scale_ / scale_ : Scalar(-1);
+        return reach >= 0 && scaledSquared <= reach * reach ? squared : Scalar(-1);
     }
 
     /// The cube around the ball, rounded outward; NaN when the region is empty.

@@ -144,6 +144,22 @@ TYPED_TEST(GridQuery, OfWhatAFilterAcceptsGoesOnBehindThoseThatAreRefused) {
     EXPECT_EQ(count.count(), 0U);
 }
 
+TYPED_TEST(GridQuery, OfTheClosestInABallDoesNotDependOnItsRadius) {
+    using Scalar = TypeParam;
+    Population<Scalar> world;
+    for (const int x : {9, 4, 7}) {
+        const auto box = boxAround<Scalar>({double(x), 0, 0}, {1, 1, 1});
+        static_cast<void>(world.grid.add(box, Mobility::mobile));
+    }
+    world.grid.update();
+    for (const Scalar radius :
+         {Scalar(5), std::numeric_limits<Scalar>::max(), std::numeric_limits<Scalar>::infinity()}) {
+        CollectClosest<Scalar> closest;
+        world.grid.visit(SphereRegion<Scalar>({0, 0, 0}, radius), closest);
+        EXPECT_EQ(closest.key(), Scalar(9)) << radius;
+    }
+}
+
 // --- Cells ---------------------------------------------------------------------------------------
 
 TYPED_TEST(GridQuery, OfAPointsCellIsTheFloorOfItsCoordinates) {
