@@ -232,6 +232,33 @@ TEST(Callbacks, OfProcessAllOverlappingPairsMayThrow) {
     EXPECT_EQ(cache.getOverlappingPairArrayPtr()->m_pProxy0, &proxies[0]);
 }
 
+TEST(Callbacks, ThatFailAgainWhileACreationIsUndoneGiveWayToTheFirstFailure) {
+    Room room(150);
+    room.check();
+    PairJournal ghosts;
+    ghosts.onBirth = [&](btBroadphaseProxy*, btBroadphaseProxy*) {
+        if (ghosts.alive.size() == 2) {
+            throw std::runtime_error("first");
+        }
+    };
+    ghosts.onDeath = [](btBroadphaseProxy*, btBroadphaseProxy*) {
+        throw std::runtime_error("second");
+    };
+    room.cache.setInternalGhostPairCallback(&ghosts);
+    const Box box = room.anywhere();
+    const auto create = [&] {
+        room.broadphase.createProxy(box.min, box.max, 0, nullptr, kEager,
+                                    btBroadphaseProxy::AllFilter, nullptr);
+    };
+    try {
+        create();
+        ADD_FAILURE() << "should have thrown";
+    } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "first");
+    }
+    room.cache.setInternalGhostPairCallback(nullptr);
+}
+
 #if HASHPHASE_ENABLE_ASSERTS
 TEST(Callbacks, OfTheFilterMustChangeNothing) {
     std::function<void(btBroadphaseProxy&)> change;
