@@ -266,15 +266,17 @@ bool scanAll(const Level<Scalar>& level, const Query& query, Run run, Row row, P
             return false;
         }
         tested += count;
+        IndexPair* next = found.next;
         for (const std::uint32_t end = run.first + count; run.first < end; run.first += width) {
             std::uint32_t mask = box.template overlapMask<width>(level.columns, run.first) &
                                  laneMask(end - run.first, width);
             for (; mask != 0; mask &= mask - 1) {
                 const std::uint32_t hit = run.first + lowestBit(mask);
-                *found.next = {query.number, hit};
-                found.next += isInRow<kIsDense>(level, hit, row) && query.finds(hit) ? 1 : 0;
+                *next = {query.number, hit};
+                next += isInRow<kIsDense>(level, hit, row) && query.finds(hit) ? 1 : 0;
             }
         }
+        found.next = next;
     }
     return true;
 }

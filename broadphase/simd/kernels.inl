@@ -92,15 +92,23 @@ void findRange(const Scalar* column, std::uint32_t first, std::uint32_t last, Sc
 template <class Scalar>
 std::size_t selectApart(const IndexPair* pairs, std::size_t count, const std::uint32_t* order,
                         const PaddedBox<Scalar>* boxes, IndexPair* apart) {
-    std::size_t selected = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const IndexPair pair = pairs[i];
-        const std::uint32_t a = order != nullptr ? order[pair.a] : pair.a;
-        const std::uint32_t b = order != nullptr ? order[pair.b] : pair.b;
-        apart[selected] = pair;
-        selected += isApart(boxes[a], boxes[b]);
+    constexpr std::size_t kWordBits = 64;
+    const IndexPair* const begin = apart;
+    for (std::size_t first = 0; first < count; first += kWordBits) {
+        const std::size_t left = count - first;
+        const std::size_t last = first + (left < kWordBits ? left : kWordBits);
+        std::uint64_t word = 0;
+        for (std::size_t i = first; i < last; ++i) {
+            const IndexPair pair = pairs[i];
+            const std::uint32_t a = order != nullptr ? order[pair.a] : pair.a;
+            const std::uint32_t b = order != nullptr ? order[pair.b] : pair.b;
+            word |= std::uint64_t{isApart(boxes[a], boxes[b])} << (i - first);
+        }
+        for (; word != 0; word &= word - 1) {
+            *apart++ = pairs[first + lowestBit(word)];
+        }
     }
-    return selected;
+    return static_cast<std::size_t>(apart - begin);
 }
 
 // What is NaN overlaps nothing.
