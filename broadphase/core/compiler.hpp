@@ -58,9 +58,10 @@
 #define HASHPHASE_KEPT maybe_unused
 #include <intrin.h>
 #else
-#define HASHPHASE_ALWAYS_INLINE
-#define HASHPHASE_NO_INLINE
-#define HASHPHASE_FLATTEN
+// Which changes nothing; some parsers take no empty brackets.
+#define HASHPHASE_ALWAYS_INLINE maybe_unused
+#define HASHPHASE_NO_INLINE maybe_unused
+#define HASHPHASE_FLATTEN maybe_unused
 #define HASHPHASE_KEPT maybe_unused
 #endif
 
