@@ -60,12 +60,24 @@ template <class Scalar>
     return boxAround<Scalar>(center, Vector3<Scalar>::Constant(radius));
 }
 
+/// True when any of the six coordinates is NaN.
+template <class Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool hasNan(const Aabb<Scalar>& box) noexcept {
+    const Scalar* low = box.min().data();
+    const Scalar* high = box.max().data();
+    return detail::areUnordered(low[0], high[0]) || detail::areUnordered(low[1], high[1]) ||
+           detail::areUnordered(low[2], high[2]);
+}
+
 /// True when the closed boxes a and b share a point: a.min <= b.max and b.min <= a.max on every
 /// axis. False when any of the twelve numbers is NaN. Written without branches: where the test matters, no
 /// branch can be predicted.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool overlaps(const Aabb<Scalar>& a,
                                                             const Aabb<Scalar>& b) noexcept {
+    if (HASHPHASE_OVERLOOKS_NAN && (hasNan(a) || hasNan(b))) {
+        return false;
+    }
     const Scalar* aMin = a.min().data();
     const Scalar* aMax = a.max().data();
     const Scalar* bMin = b.min().data();
@@ -92,15 +104,6 @@ template <class Scalar>
     return isSameBits(aMin[0], bMin[0]) && isSameBits(aMin[1], bMin[1]) &&
            isSameBits(aMin[2], bMin[2]) && isSameBits(aMax[0], bMax[0]) &&
            isSameBits(aMax[1], bMax[1]) && isSameBits(aMax[2], bMax[2]);
-}
-
-/// True when any of the six coordinates is NaN.
-template <class Scalar>
-[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool hasNan(const Aabb<Scalar>& box) noexcept {
-    const Scalar* low = box.min().data();
-    const Scalar* high = box.max().data();
-    return detail::areUnordered(low[0], high[0]) || detail::areUnordered(low[1], high[1]) ||
-           detail::areUnordered(low[2], high[2]);
 }
 
 namespace detail {

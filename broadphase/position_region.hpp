@@ -64,17 +64,8 @@ public:
 
     /// The key of a box with this position [m]; -1 for a NaN.
     [[nodiscard]] Scalar keyAt(const Vector3<Scalar>& position) const noexcept {
-        Scalar squared = 0;
-        Scalar scaledSquared = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            const Scalar offset = position[axis] - center_[axis];
-            squared += offset * offset;
-            scaledSquared += (offset * scale_) * (offset * scale_);
-        }
-        // The test is scaled, so that it holds where squares leave the range of numbers; the key is
-        // not, so that it does not depend on the radius.
-        const Scalar reach = radius_ * scale_;
-        return reach >= 0 && scaledSquared <= reach * reach ? squared : Scalar(-1);
+        return detail::squareWithin(position[0] - center_[0], position[1] - center_[1],
+                                    position[2] - center_[2], radius_, scale_);
     }
 
     /// The cube around the ball, rounded outward; NaN when the region is empty.

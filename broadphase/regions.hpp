@@ -60,21 +60,16 @@ public:
     /// The squared distance [m^2], or -1 outside. It may round to 0 or infinity where it leaves the range of
     /// Scalar; whether the box is in the ball is decided without that rounding.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
-        Scalar squared = 0;
-        Scalar scaledSquared = 0;
+        Scalar outside[3] = {};
         for (int axis = 0; axis < 3; ++axis) {
             const Scalar before = box.min()[axis] - center_[axis];
             const Scalar behind = center_[axis] - box.max()[axis];
             if (detail::isNan(before) || detail::isNan(behind)) {
                 return -1;
             }
-            const Scalar outside = std::max({before, behind, Scalar(0)});
-            squared += outside * outside;
-            scaledSquared += (outside * scale_) * (outside * scale_);
+            outside[axis] = std::max({before, behind, Scalar(0)});
         }
-        // The key is not scaled back: a divisor that is squared first, as by -ffast-math, would vanish.
-        const Scalar reach = radius_ * scale_;
-        return reach >= 0 && scaledSquared <= reach * reach ? squared : Scalar(-1);
+        return detail::squareWithin(outside[0], outside[1], outside[2], radius_, scale_);
     }
 
     /// The cube around the ball, rounded outward; NaN when the region is empty.
@@ -138,6 +133,9 @@ public:
 
     /// The fraction from 0 to 1 at which the ray enters the box, or -1 when it misses the box.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
+        if (HASHPHASE_OVERLOOKS_NAN && isEmpty()) {
+            return -1;
+        }
         // Slabs; each distance is off by at most gamma(3), see Pharr, Jakob, Humphreys,
         // "Physically Based Rendering", 4th edition, section 6.8.3.
         Scalar enter = 0;

@@ -14,15 +14,14 @@
 //                             before 22, what it calls itself)
 // HASHPHASE_LIFETIME_BOUND    of a parameter to which the new object keeps a reference: a compiler that
 //                             knows it warns where a temporary would die before the object
-// HASHPHASE_HAS_SSE2          1 where every processor that this code is compiled for has these
-// HASHPHASE_HAS_NEON          instructions, and the compiler their functions
-// HASHPHASE_HAS_SIMD128
-// HASHPHASE_HAS_EXCEPTIONS    1 where this code is compiled with exceptions (without -fno-exceptions)
+// HASHPHASE_KEPT              of a variable that compiler and linker keep though nothing uses it
+// HASHPHASE_HAS_SSE2, HASHPHASE_HAS_NEON, HASHPHASE_HAS_SIMD128
+//                             1 where every processor that this code is compiled for has these instructions
 // HASHPHASE_STANDARD_LIBRARY  the name of a symbol that says which standard library this is, where programs
 //                             and libraries may be at odds about it (core/same_library.hpp)
-// HASHPHASE_KEPT              of a variable that compiler and linker keep though nothing uses it
-// HASHPHASE_HAS_RTTI          1 where it may ask for types when it runs (without -fno-rtti)
-// HASHPHASE_IS_OPTIMISED      1 where this code is optimised; MSVC does not say, so where it has no run-time
+// HASHPHASE_HAS_EXCEPTIONS    1 where this code is compiled with exceptions (without -fno-exceptions)
+// HASHPHASE_HAS_RTTI          1 where this code is compiled with RTTI (without -fno-rtti)
+// HASHPHASE_IS_OPTIMISED      1 where this code is optimised. MSVC does not say; there, 1 without its run-time
 //                             library for debugging
 // HASHPHASE_OVERLOOKS_NAN     1 where comparisons may be compiled as if no number were NaN or infinite
 //                             (-ffast-math); isNan() and isFinite() look at the bits then
@@ -38,7 +37,7 @@
 
 // A float that is calculated with more bits (x87) is another one where it is stored, and a box would no longer
 // be filed where it is looked for.
-#if FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 2
+#if FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 2 || (defined(__i386__) && !defined(__SSE2_MATH__))
 #error "On 32-bit x86 hashphase needs -msse2 -mfpmath=sse: x87 rounds otherwise."
 #endif
 
@@ -70,7 +69,7 @@
 #elif __has_cpp_attribute(msvc::lifetimebound)
 #define HASHPHASE_LIFETIME_BOUND msvc::lifetimebound
 #else
-#define HASHPHASE_LIFETIME_BOUND
+#define HASHPHASE_LIFETIME_BOUND maybe_unused
 #endif
 
 #if defined(__SSE2__) || defined(_M_X64) || (defined(_M_IX86_FP) && _M_IX86_FP >= 2)
@@ -78,7 +77,7 @@
 #else
 #define HASHPHASE_HAS_SSE2 0
 #endif
-#if defined(__aarch64__) || defined(_M_ARM64)
+#if (defined(__aarch64__) && !defined(__ARM_BIG_ENDIAN)) || defined(_M_ARM64)
 #define HASHPHASE_HAS_NEON 1
 #else
 #define HASHPHASE_HAS_NEON 0
@@ -147,10 +146,15 @@ namespace hashphase::detail {
 /// The number of the lowest bit that is set in a word that is not 0.
 template <std::unsigned_integral Word>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::uint32_t lowestBit(Word word) noexcept {
+    // Not by std::countr_zero() alone: where that is not inlined, the linker might keep a copy that was compiled
+    // for another processor.
 #if defined(__clang__) || defined(__GNUC__)
-    // Also what is not optimised is not a function that other code could be given in its place.
     return static_cast<std::uint32_t>(sizeof(Word) <= 4 ? __builtin_ctz(static_cast<unsigned>(word))
                                                         : __builtin_ctzll(word));
+#elif defined(_M_X64) || defined(_M_ARM64)
+    unsigned long bit = 0;
+    _BitScanForward64(&bit, word);
+    return bit;
 #else
     return static_cast<std::uint32_t>(std::countr_zero(word));
 #endif
@@ -163,6 +167,19 @@ template <std::floating_point Scalar>
     return static_cast<Scalar>(__builtin_fabs(static_cast<double>(x)));
 #else
     return std::fabs(x);
+#endif
+}
+
+/// x, which was calculated as it is written, with -ffast-math as well: no other operation is made of it and those
+/// that follow.
+template <std::floating_point Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline Scalar grouped(Scalar x) noexcept {
+#if defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
+    return __arithmetic_fence(x);
+#elif defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12
+    return __builtin_assoc_barrier(x);
+#else
+    return x;
 #endif
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/diagnostics.hpp>
 
 #include <cstddef>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-#include <algorithm>
-
 #include <broadphase/core/compiler.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +17,21 @@ template <class Scalar>
     const bool isOrdinary = isFinite(length) && length > 0;
     const int exponent = isOrdinary ? std::ilogb(length) : (length > 0 ? most : -most);
     return std::ldexp(Scalar(1), std::clamp(-exponent, -most, most));
+}
+
+/// The squared length of an offset, or -1 where it is longer than `radius`, whose unitScale() is `scale`, and
+/// where one of them is NaN. The test is scaled, so that it holds where squares leave the range of numbers; the
+/// square is not, so that it does not depend on the radius. (Nor is it scaled back: a divisor that is squared
+/// first, as by -ffast-math, would vanish.)
+template <class Scalar>
+[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline Scalar squareWithin(Scalar x, Scalar y, Scalar z,
+                                                                  Scalar radius,
+                                                                  Scalar scale) noexcept {
+    const auto squareOf = [](Scalar a, Scalar b, Scalar c) { return a * a + b * b + c * c; };
+    const Scalar square = squareOf(grouped(x * scale), grouped(y * scale), grouped(z * scale));
+    const Scalar reach = radius * scale;
+    const bool isWithin = reach >= 0 && square <= reach * reach && !isNan(square);
+    return isWithin ? squareOf(x, y, z) : Scalar(-1);
 }
 
 }  // namespace hashphase::detail

@@ -4,6 +4,7 @@
 // A bucket in which hundreds share a cell, and where to read in it. Inlined into each of the
 // kernels: what stands here may call only what is always inlined, as kernels.inl says.
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/proxy_groups.hpp>
 
 #include <cstddef>

@@ -35,7 +35,8 @@ template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool isNan(const PaddedBox<Scalar>& box) noexcept {
     bool result = false;
     for (int axis = 0; axis < 3; ++axis) {
-        result |= (box.low[axis] != box.low[axis]) | (box.high[axis] != box.high[axis]);
+        result |= isNan(box.low[axis]);
+        result |= isNan(box.high[axis]);
     }
     return result;
 }

@@ -114,6 +114,33 @@ void printPairs(const char* name, World<Scalar>& world) {
                 world.pairs.validate().c_str());
 }
 
+// Regions that are empty, and those that nearly are, about a box that waits for the next update.
+template <class Scalar>
+void askOfNothing(World<Scalar>& world) {
+    const Scalar nan = special<Scalar>(kNanBits);
+    const Scalar infinity = special<Scalar>(kInfinityBits);
+    const Vector3<Scalar> inside(28, 20, 20);
+    const Aabb<Scalar> all = boxAround<Scalar>({32, 32, 32}, infinity);
+    for (int axis = 0; axis < 3; ++axis) {
+        Vector3<Scalar> nowhere = inside;
+        nowhere[axis] = nan;
+        printFound("ray to nowhere", world, RayRegion<Scalar>(inside, nowhere));
+        printFound("ray from nowhere", world, RayRegion<Scalar>(nowhere, inside));
+        printFound("ball nowhere", world, SphereRegion<Scalar>(nowhere, Scalar(20)));
+        printFound("positions nowhere", world, PositionRegion<Scalar>(nowhere, infinity));
+        for (const bool isLow : {false, true}) {
+            BoxRegion<Scalar> region{all};
+            (isLow ? region.box.min() : region.box.max())[axis] = nan;
+            printFound("box without a side", world, region);
+        }
+    }
+    for (const Scalar radius : {nan, Scalar(-1), Scalar(0), infinity}) {
+        printFound("ball", world, SphereRegion<Scalar>(inside, radius));
+        printFound("positions", world, PositionRegion<Scalar>(inside, radius));
+        printFound("cells", world, CellsRegion<Scalar>(inside, radius, 4));
+    }
+}
+
 // Boxes that are none go and come, before an update and after it, at rest and in motion.
 template <class Scalar>
 void moveWhatIsNoNumber(World<Scalar>& world) {
@@ -147,6 +174,8 @@ void moveWhatIsNoNumber(World<Scalar>& world) {
         std::printf("\n");
         printFound("before the update", world, RayRegion<Scalar>({0, 20, 20}, {64, 20, 20}));
         printFound("balls", world, SphereRegion<Scalar>({32, 20, 20}, Scalar(20)));
+        printFound("positions", world, PositionRegion<Scalar>({32, 20, 20}, Scalar(20)));
+        askOfNothing(world);
         printPairs("frame", world);
     }
     printFound("all", world, BoxRegion<Scalar>{boxAround<Scalar>({32, 32, 32}, infinity)});
