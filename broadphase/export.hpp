@@ -28,7 +28,6 @@
 #if HASHPHASE_SHARED && defined(_WIN32)
 #define HASHPHASE_SYMBOL_EXPORT __declspec(dllexport)
 #define HASHPHASE_SYMBOL_IMPORT __declspec(dllimport)
-#define HASHPHASE_ONE_FOR_ALL
 #define HASHPHASE_SHARES_VARIABLES 0
 #elif HASHPHASE_SHARED
 #define HASHPHASE_SYMBOL_EXPORT __attribute__((visibility("default")))

@@ -12,7 +12,8 @@
 namespace hashphase::detail {
 
 /// What body() throws; null when it throws nothing.
-HASHPHASE_BROADPHASE_EXPORT std::exception_ptr exceptionOf(FunctionRef<void()> body) noexcept;
+[[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::exception_ptr exceptionOf(
+    FunctionRef<void()> body) noexcept;
 
 /// Whether there is memory for all that body() does: false when it throws std::bad_alloc or
 /// std::length_error. Passes on what else it throws.

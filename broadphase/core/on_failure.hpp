@@ -4,8 +4,6 @@
 #include <exception>
 #include <utility>
 
-#include <broadphase/core/hide_macros.hpp>
-
 namespace hashphase::detail {
 
 /// Calls undo() where an exception leaves the scope; the exception passes on:
@@ -31,5 +29,3 @@ private:
 };
 
 }  // namespace hashphase::detail
-
-#include <broadphase/core/restore_macros.hpp>

@@ -38,25 +38,26 @@ bool isEverywhere() noexcept {
 
 #if HASHPHASE_HAS_AVX_KERNELS && defined(_MSC_VER)
 
-// Of CPUID leaf 7 EBX: AVX2, and AVX-512 F, DQ, BW, VL. Of XCR0: what the system saves of registers.
-constexpr unsigned kAvx2 = 1U << 5;
-constexpr unsigned kAvx512 = 1U << 16 | 1U << 17 | 1U << 30 | 1U << 31;
+// What /arch:AVX2 and /arch:AVX512 let the compiler use. Of CPUID leaf 7 EBX: BMI1, AVX2, BMI2; and AVX-512 F, DQ,
+// CD, BW, VL. Of XCR0: what the system saves of registers.
+constexpr unsigned kAvx2 = 1U << 3 | 1U << 5 | 1U << 8;
+constexpr unsigned kAvx512 = kAvx2 | 1U << 16 | 1U << 17 | 1U << 28 | 1U << 30 | 1U << 31;
 constexpr unsigned kSavesAvx = 0x06;
 constexpr unsigned kSavesAvx512 = 0xe6;
 
 bool hasInstructions(unsigned wanted, unsigned saved) noexcept {
-    constexpr unsigned kSavesExtended = 1U << 27;  // of leaf 1 ECX
-    std::array<int, 4> leaf{};
-    __cpuid(leaf.data(), 0);
-    if (leaf[0] < 7) {
-        return false;
-    }
-    __cpuid(leaf.data(), 1);
-    if ((static_cast<unsigned>(leaf[2]) & kSavesExtended) == 0 || (_xgetbv(0) & saved) != saved) {
-        return false;
-    }
-    __cpuidex(leaf.data(), 7, 0);
-    return (static_cast<unsigned>(leaf[1]) & wanted) == wanted;
+    // Of leaf 1 ECX: FMA, MOVBE, and that XCR0 can be read. Of leaf 0x80000001 ECX: LZCNT.
+    constexpr unsigned kFmaMovbeXgetbv = 1U << 12 | 1U << 22 | 1U << 27;
+    constexpr unsigned kLzcnt = 1U << 5;
+    const auto has = [](int number, std::size_t part, unsigned bits) {
+        std::array<int, 4> leaf{};
+        __cpuidex(leaf.data(), number, 0);
+        return (static_cast<unsigned>(leaf[part]) & bits) == bits;
+    };
+    std::array<int, 4> last{};
+    __cpuid(last.data(), 0);
+    return last[0] >= 7 && has(1, 2, kFmaMovbeXgetbv) && (_xgetbv(0) & saved) == saved &&
+           has(7, 1, wanted) && has(static_cast<int>(0x80000001), 2, kLzcnt);
 }
 
 bool hasAvx2() noexcept {

@@ -23,8 +23,11 @@ btDynamicsWorld* dynamicsWorldOf([[maybe_unused]] btCollisionWorld& world) {
 }
 
 bool mayHaveJoints(btCollisionWorld& world) {
+    if (detail::knowsItsType(world)) {
+        return false;
+    }
     const btCollisionObjectArray& objects = world.getCollisionObjectArray();
-    for (int i = 0; i < objects.size() && !detail::knowsItsType(world); ++i) {
+    for (int i = 0; i < objects.size(); ++i) {
         if (btRigidBody::upcast(objects[i]) != nullptr) {
             return true;
         }

@@ -12,7 +12,7 @@ namespace hashphase::detail {
 namespace {
 
 // By Gauss and Jordan, with the largest number that is left as each pivot. None where one is not above
-// `threshold` times the largest.
+// `threshold` times the largest. Not Eigen::FullPivLU, whose code would depend on the options of the program.
 std::optional<Matrix4<double>> inverseByPivots(Matrix4<double> matrix, double threshold) {
     Matrix4<double> inverse = Matrix4<double>::Identity();
     std::array<std::pair<int, int>, 4> pivots;
@@ -45,8 +45,11 @@ std::optional<Matrix4<double>> inverseByPivots(Matrix4<double> matrix, double th
             inverse(k, i) /= pivot;
         }
         for (int r = 0; r < 4; ++r) {
+            if (r == k) {
+                continue;
+            }
             const double share = matrix(r, k);
-            for (int i = 0; i < 4 && r != k; ++i) {
+            for (int i = 0; i < 4; ++i) {
                 matrix(r, i) -= share * matrix(k, i);
                 inverse(r, i) -= share * inverse(k, i);
             }
