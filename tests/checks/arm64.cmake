@@ -15,4 +15,4 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(ENV{PKG_CONFIG_LIBDIR} ${HASHPHASE_SYSROOT}/usr/lib/aarch64-linux-gnu/pkgconfig)
 set(ENV{PKG_CONFIG_SYSROOT_DIR} ${HASHPHASE_SYSROOT})
 # GCC notes at each call how an older one would have passed it.
-set(CMAKE_CXX_FLAGS_INIT "-isystem ${HASHPHASE_SYSROOT}/usr/include/aarch64-linux-gnu -Wno-psabi")
+set(CMAKE_CXX_FLAGS_INIT "-isystem \"${HASHPHASE_SYSROOT}/usr/include/aarch64-linux-gnu\" -Wno-psabi")

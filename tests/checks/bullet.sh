@@ -46,14 +46,19 @@ newest_sources() {
 build_newest() {
     build=$root/build/check-bullet-$1
     say "building build/${build##*/}"
-    cmake -S "$root/tests/checks/bullet" -B "$build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+    mkdir -p "$build"
+    cmake --fresh -S "$root/tests/checks/bullet" -B "$build" -G Ninja -Wno-dev -DCMAKE_BUILD_TYPE=RelWithDebInfo \
         -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -DCMAKE_POLICY_VERSION_MINIMUM=3.5 -DEigen3_SOURCES="$eigen" \
         -DHASHPHASE_ASSERTS=ON -DHASHPHASE_BUILD_TESTS=ON -DHASHPHASE_QUICK_BUILD=ON \
-        -DHASHPHASE_WARNINGS_AS_ERRORS=ON "${@:2}" >"$build.log" || {
-        cat "$build.log" >&2
+        -DHASHPHASE_WARNINGS_AS_ERRORS=ON "${@:2}" >"$build/configure.log" || {
+        cat "$build/configure.log" >&2
         return 1
     }
     cmake --build "$build" --target "${programs[@]/%/-tests}" >&2
+    if ninja -C "$build" -t deps | grep -E '^ */usr/include/(bullet|eigen3)/' >&2; then
+        say "these headers of the system were compiled in place of the newest"
+        return 1
+    fi
 }
 
 # install_bullet <name> <cmake option>...: Bullet as a package of its own makers', in double precision.

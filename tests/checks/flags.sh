@@ -67,7 +67,7 @@ flags_holds() {
 flags_symbols() {
     local objects
     objects=$(find "$folder/$1/broadphase" "$folder/$1/integration" -name '*.o' | paste -sd,)
-    cmake -DNM="$(command -v nm)" -DOBJECTS="$objects" \
+    cmake -DNM="$(command -v nm)" -DKERNELS=2 -DOBJECTS="$objects" \
         -P "$root/tests/package/check_symbols.cmake" >&2
 }
 

@@ -26,12 +26,12 @@ namespace {
 
 using namespace hashphase;
 
-/// 2,000 boxes, five or so on each of them.
+/// 1,000 boxes, five or so on each of them.
 template <class Scalar>
 class Scene {
 public:
     Scene() {
-        for (int i = 0; i < 2000; ++i) {
+        for (int i = 0; i < 1000; ++i) {
             boxes_.push_back(boxAround(point()));
             ids_.push_back(grid_.add(boxes_.back()));
         }
@@ -53,7 +53,8 @@ public:
         Sweeps<Scalar> sweeps(grid_);
         pairs.setSweeps(&sweeps);
         for (std::size_t i = 0; i < ids_.size(); i += 4) {
-            sweeps.set(ids_[i], Vector3<Scalar>((point() - point()) / 4), Sweep::line);
+            const Vector3<Scalar> from = point();
+            sweeps.set(ids_[i], Vector3<Scalar>((point() - from) / 4), Sweep::line);
         }
         pairs.update();
     }
@@ -72,18 +73,18 @@ public:
             grid_.visitEach(std::span<const BoxRegion<Scalar>>(regions), std::span(counts)).hits;
     }
     void castRays() {
-        grid_.expectRays(400);
-        for (int i = 0; i < 400; ++i) {
-            ask(RayRegion<Scalar>(point(), point()));
+        grid_.expectRays(200);
+        for (int i = 0; i < 200; ++i) {
+            ask(RayRegion<Scalar>{point(), point()});
         }
     }
     void walkRays() {
         for (int i = 0; i < 4; ++i) {
-            ask(RayRegion<Scalar>(point(), point()));
+            ask(RayRegion<Scalar>{point(), point()});
         }
     }
     void cull() {
-        for (int i = 0; i < 40; ++i) {
+        for (int i = 0; i < 20; ++i) {
             const Vector3<Scalar> low = point() / 2;
             std::array<typename ConvexRegion<Scalar>::Plane, 6> planes;
             for (int axis = 0; axis < 3; ++axis) {
@@ -106,7 +107,7 @@ public:
     [[nodiscard]] std::uint64_t found() const { return found_; }
 
 private:
-    static constexpr Scalar kSize = 12;  // of the scene [m]
+    static constexpr Scalar kSize = 9.5;  // of the scene [m]
 
     Scalar number() { return static_cast<Scalar>(random_() % 65536) / 65536; }
     Vector3<Scalar> point() {

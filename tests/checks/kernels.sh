@@ -2,8 +2,8 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154 # tests/check takes the packages, and has the root
 #
-# Sourced by tests/check. The kernels, and a source of each other file that knows instructions, are compiled
-# for 64-bit ARM, and warn of nothing; tests/check arm64 runs them.
+# Sourced by tests/check. The kernels for 64-bit ARM, and others that depend on instructions, compile for it
+# without a warning; tests/check arm64 runs them.
 
 tools+=(aarch64-linux-gnu-g++:g++-aarch64-linux-gnu)
 

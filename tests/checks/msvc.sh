@@ -31,8 +31,8 @@ check_msvc() {
         [[ $component != broadphase ]] || folder=broadphase
         (cd "$root" && find "$folder" -name '*.cpp' ! -name 'kernels_*') |
             sort | sed 's/.*/#include <&>/' >"$build/$component.cpp"
-        if as_msvc -include-pch "$build/headers.pch" -D"hashphase_${component}_EXPORTS" -fsyntax-only \
-            "$build/$component.cpp"; then
+        if as_msvc -include-pch "$build/headers.pch" -D"hashphase_${component}_EXPORTS" -c \
+            "$build/$component.cpp" -o /dev/null; then
             passed=$((passed + 1))
         else
             failed=$((failed + 1))
@@ -41,8 +41,8 @@ check_msvc() {
     local kernels instructions
     while read -r kernels instructions; do
         # shellcheck disable=SC2086 # one word each
-        if as_msvc -include "$headers/standard.hpp" $instructions -Dhashphase_broadphase_EXPORTS -fsyntax-only \
-            "$root/broadphase/simd/kernels_$kernels.cpp"; then
+        if as_msvc -include "$headers/standard.hpp" $instructions -Dhashphase_broadphase_EXPORTS -c \
+            "$root/broadphase/simd/kernels_$kernels.cpp" -o /dev/null; then
             passed=$((passed + 1))
         else
             failed=$((failed + 1))

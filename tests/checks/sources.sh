@@ -17,7 +17,7 @@ private_apt() {
     if [[ ! $(find "$lists/updated" -mmin -1440 2>/dev/null) ]]; then
         mkdir -p "$lists/state"
         if compgen -G '/etc/apt/sources.list.d/*.sources' >/dev/null; then
-            sed "s/^Types:.*/Types: $1/" /etc/apt/sources.list.d/*.sources >"$lists/servers.sources"
+            sed -s -e "s/^Types:.*/Types: $1/" -e '$G' /etc/apt/sources.list.d/*.sources >"$lists/servers.sources"
         fi
         if [[ -s /etc/apt/sources.list ]]; then
             sed -n "s/^deb /$1 /p" /etc/apt/sources.list >"$lists/servers.list"
@@ -73,6 +73,11 @@ run_part() {
         echo "${1##*/}: exit status $status" # 124 where it took twenty minutes
         return 1
     }
+    grep -q '^\[  PASSED  \]' "$log" || {
+        cat "$log"
+        echo "${1##*/}: ended without a word of its tests"
+        return 1
+    }
 }
 
 # run_programs <folder> <launcher>...: runs the `programs` that were built in the folder by the launcher,
@@ -88,7 +93,7 @@ run_programs() {
     export -f run_part
     for name in "${built[@]}"; do
         printf '%s\n' "$name" 0 "$name" 1 "$name" 2 "$name" 3
-    done | xargs -d '\n' -n2 -P2 bash -c 'run_part "$0" "$1" '"${*:2}" >&2 || outcome=1
+    done | xargs -d '\n' -n2 -P2 bash -c 'run_part "${@: -2}" "${@:1:$#-2}"' run_part "${@:2}" >&2 || outcome=1
     cat "${built[@]/%/.0.log}" "${built[@]/%/.1.log}" "${built[@]/%/.2.log}" "${built[@]/%/.3.log}" | awk '
         /^\[  PASSED  \]/ { passed += $4 }
         /^\[  SKIPPED \] [0-9]+ test/ { skipped += $4 }

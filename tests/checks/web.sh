@@ -2,8 +2,8 @@
 # shellcheck shell=bash
 #
 # WebAssembly: Clang and WASI's C library are packages; the C++ library with exceptions, GoogleTest, GMP and
-# Bullet are compiled from source packages, once, into build/check-web/prefix. Emscripten's browsers have what
-# is asked for here: exceptions (-fwasm-exceptions), a file system, and no threads.
+# Bullet are compiled from source packages, once, into build/check-web/prefix. As by Emscripten there are exceptions
+# (-fwasm-exceptions), a file system, and no threads.
 
 # shellcheck source=tests/checks/sources.sh
 source "${root:?}/tests/checks/sources.sh"
@@ -94,6 +94,10 @@ web_build() {
 }
 
 check_web() {
+    if [[ $root == *' '* ]]; then
+        say "web needs a path without spaces, for the sources of GMP are configured in it"
+        return 1
+    fi
     web_once libcxx web_libcxx
     web_once googletest web_googletest
     web_once gmp web_gmp

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Zlib
 #
-# cmake -DNM=<nm> -DOBJECTS=<file>[,<file>...] -P check_symbols.cmake
+# cmake -DNM=<nm> -DKERNELS=<number> -DOBJECTS=<file>[,<file>...] -P check_symbols.cmake
 #
 # Of functions that several objects of a program have, the linker keeps one, from whichever it likes. So
-# - the kernels of AVX2 and AVX-512 have none: a processor without would run their instructions;
+# - the kernels of AVX2 and AVX-512, of which there are this number, have none: a processor without would run their instructions;
 # - no object of the libraries has one for a type of Eigen's that is aligned by the compiler's options: a
 #   program with other options would read what it has not aligned.
 
@@ -39,6 +39,9 @@ foreach(object IN LISTS objects)
 endforeach()
 list(LENGTH objects count)
 message(STATUS "${count} objects, ${kernelCount} of them kernels of AVX")
+if(NOT kernelCount EQUAL KERNELS)
+    message(FATAL_ERROR "${KERNELS} kernels of AVX were expected.")
+endif()
 if(count EQUAL 0)
     message(FATAL_ERROR "There are no objects to look at.")
 endif()

@@ -15,8 +15,8 @@ foreach(language IN ITEMS C CXX)
 endforeach()
 set(CMAKE_C_COMPILER clang-19)
 set(CMAKE_CXX_COMPILER clang++-19)
-set(CMAKE_AR /usr/bin/llvm-ar-19)
-set(CMAKE_RANLIB /usr/bin/llvm-ranlib-19)
+find_program(CMAKE_AR llvm-ar-19 REQUIRED)
+find_program(CMAKE_RANLIB llvm-ranlib-19 REQUIRED)
 string(APPEND CMAKE_CXX_FLAGS_INIT
        " -nostdinc++ -isystem ${HASHPHASE_WEB}/include/c++/v1 -isystem ${CMAKE_CURRENT_LIST_DIR}")
 # The stack is what the guide asks for; below it is nothing, so that what needs more ends the program.

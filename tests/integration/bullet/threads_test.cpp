@@ -22,7 +22,6 @@ TEST(Threads, GiveTheSamePairsInTheSameOrder) {
     EXPECT_GT(threadedFor.mostRanges(), 1U);
 }
 
-// On any threads.
 TEST(FirstException, IsKeptWhileOtherThreadsEnd) {
     ThreadedFor threadedFor(3, 0x5eed0903);
     std::vector<int> times(1000, 0);
