@@ -30,8 +30,10 @@ template <class Scalar>
     const auto squareOf = [](Scalar a, Scalar b, Scalar c) { return a * a + b * b + c * c; };
     const Scalar square = squareOf(grouped(x * scale), grouped(y * scale), grouped(z * scale));
     const Scalar reach = radius * scale;
-    const bool isWithin = reach >= 0 && square <= reach * reach && !isNan(square);
-    return isWithin ? squareOf(x, y, z) : Scalar(-1);
+    if (HASHPHASE_OVERLOOKS_NAN && (isNan(reach) || isNan(square))) {
+        return -1;
+    }
+    return reach >= 0 && square <= reach * reach ? squareOf(x, y, z) : Scalar(-1);
 }
 
 }  // namespace hashphase::detail

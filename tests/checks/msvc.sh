@@ -20,39 +20,38 @@ as_msvc() {
         -isystem /usr/include/eigen3 -isystem /usr/include/bullet -I"$root" "$@"
 }
 
-check_msvc() {
-    local build=$root/build/check-msvc component folder headers passed=0 failed=0
-    headers=$root/tests/checks/msvc
+# msvc_compiles <source> <option>...: prints whether it does.
+msvc_compiles() {
+    if as_msvc "${@:2}" -c "$1" -o /dev/null; then
+        echo passed
+    else
+        echo failed
+    fi
+}
+
+check_msvc() (
+    build=build/check-msvc
+    headers=tests/checks/msvc
+    sources=() # each with its options
+    cd "$root" || exit
     mkdir -p "$build"
     as_msvc -x c++-header "$headers/headers.hpp" -o "$build/headers.pch"
     for component in broadphase ai bullet camera culling effects picking terrain; do
         # One after another in one file, as in a quick build.
         folder=integration/$component
         [[ $component != broadphase ]] || folder=broadphase
-        (cd "$root" && find "$folder" -name '*.cpp' ! -name 'kernels_*') |
+        find "$folder" -name '*.cpp' ! -name 'kernels_*' |
             sort | sed 's/.*/#include <&>/' >"$build/$component.cpp"
-        if as_msvc -include-pch "$build/headers.pch" -D"hashphase_${component}_EXPORTS" -c \
-            "$build/$component.cpp" -o /dev/null; then
-            passed=$((passed + 1))
-        else
-            failed=$((failed + 1))
-        fi
+        sources+=("$build/$component.cpp -include-pch $build/headers.pch -Dhashphase_${component}_EXPORTS")
     done
-    local kernels instructions
-    while read -r kernels instructions; do
-        # shellcheck disable=SC2086 # one word each
-        if as_msvc -include "$headers/standard.hpp" $instructions -Dhashphase_broadphase_EXPORTS -c \
-            "$root/broadphase/simd/kernels_$kernels.cpp" -o /dev/null; then
-            passed=$((passed + 1))
-        else
-            failed=$((failed + 1))
-        fi
-    done <<'KERNELS'
-scalar
-sse2
-avx2 -mavx2
-avx512 -mavx512f -mavx512vl -mavx512bw -mavx512dq
-KERNELS
-    say "libraries and kernels in MSVC's dialect: $passed passed, $failed failed, 0 skipped"
-    ((failed == 0))
-}
+    for kernels in scalar.cpp sse2.cpp 'avx2.cpp -mavx2' \
+        'avx512.cpp -mavx512f -mavx512vl -mavx512bw -mavx512dq'; do
+        sources+=("broadphase/simd/kernels_$kernels -include $headers/standard.hpp -Dhashphase_broadphase_EXPORTS")
+    done
+    export root
+    export -f as_msvc msvc_compiles
+    outcomes=$(printf '%s\n' "${sources[@]}" | xargs -P2 -L1 bash -c 'msvc_compiles "$@"' msvc_compiles)
+    passed=$(grep -c passed <<<"$outcomes" || true)
+    say "libraries and kernels in MSVC's dialect: $passed passed, $((${#sources[@]} - passed)) failed, 0 skipped"
+    ((passed == ${#sources[@]}))
+)
