@@ -78,7 +78,7 @@ web_gmp() (
     "$sources/configure" --host=none --disable-assembly --disable-shared --enable-cxx \
         --prefix="$web_prefix" CC_FOR_BUILD=cc AR=llvm-ar-19 RANLIB=llvm-ranlib-19 NM=llvm-nm-19 CFLAGS=-O1 \
         CC="clang-19 --target=wasm32-wasi -fwasm-exceptions" LDFLAGS="-L$web_prefix/lib" \
-        CXX="clang++-19 --target=wasm32-wasi -fwasm-exceptions -nostdinc++ -isystem $web_prefix/include/c++/v1 -isystem $web_files" \
+        CXX="clang++-19 --target=wasm32-wasi -fwasm-exceptions -nostdinc++ -isystem $web_prefix/include/c++/v1 -isystem $web_files -L$web_prefix/lib" \
         LIBS="-lc++ -lc++abi -lunwind"
     make -j"$(nproc)" SUBDIRS="mpn mpz mpq mpf printf scanf rand cxx" \
         CPPFLAGS="-D_WASI_EMULATED_SIGNAL '-Dkill(process,signal)=raise(signal)'" install
