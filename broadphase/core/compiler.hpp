@@ -170,19 +170,6 @@ template <std::floating_point Scalar>
 #endif
 }
 
-/// x, which was calculated as it is written, with -ffast-math as well: no other operation is made of it and those
-/// that follow.
-template <std::floating_point Scalar>
-[[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline Scalar grouped(Scalar x) noexcept {
-#if defined(__clang__) && (defined(__x86_64__) || defined(__i386__))
-    return __arithmetic_fence(x);
-#elif defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 12
-    return __builtin_assoc_barrier(x);
-#else
-    return x;
-#endif
-}
-
 /// The bits of |x|: in the order of the numbers, those of infinity after them, those of NaN last.
 template <std::floating_point Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline auto magnitudeBits(const Scalar& x) noexcept {

@@ -28,7 +28,7 @@ template <class Scalar>
                                                                   Scalar radius,
                                                                   Scalar scale) noexcept {
     const auto squareOf = [](Scalar a, Scalar b, Scalar c) { return a * a + b * b + c * c; };
-    const Scalar square = squareOf(grouped(x * scale), grouped(y * scale), grouped(z * scale));
+    const Scalar square = squareOf(x * scale, y * scale, z * scale);
     const Scalar reach = radius * scale;
     if (HASHPHASE_OVERLOOKS_NAN && (isNan(reach) || isNan(square))) {
         return -1;
