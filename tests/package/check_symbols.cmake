@@ -3,7 +3,8 @@
 # cmake -DNM=<nm> -DKERNELS=<number> -DOBJECTS=<file>[,<file>...] -P check_symbols.cmake
 #
 # Of functions that several objects of a program have, the linker keeps one, from whichever it likes. So
-# - the kernels of AVX2 and AVX-512, of which there are this number, have none: a processor without would run their instructions;
+# - the kernels of AVX2 and AVX-512, of which there are this number, have none: a processor without would run
+#   their instructions;
 # - no object of the libraries has one for a type of Eigen's that is aligned by the compiler's options: a
 #   program with other options would read what it has not aligned.
 
