@@ -37,7 +37,7 @@
 namespace hashphase {
 
 template <class Scalar>
-class Sweeps;
+class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Sweeps;
 
 /// Tells which pairs were born and which died from one update to the next.
 template <class Scalar>

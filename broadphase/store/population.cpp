@@ -126,7 +126,7 @@ void Population<Scalar>::clear() noexcept {
     settledChanged = 0;
     freeArrays(sweeping, boxesAtUpdate, groups);
     indicesAtUpdate = {};
-    groupKinds = {};
+    groupKinds = GroupKinds();  // Clang 14 forgets the destructor of {}
 }
 
 template <class Scalar>

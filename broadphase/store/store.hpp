@@ -6,6 +6,7 @@
 
 #include <broadphase/core/peak_watch.hpp>
 #include <broadphase/core/query_scope.hpp>
+#include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/grid_config.hpp>
@@ -31,7 +32,7 @@
 namespace hashphase::detail {
 
 template <class Scalar>
-struct Motions;
+struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Motions;
 
 /// Boxes of the mobile proxies, by their place in Population::mobile, and what they have in common.
 template <class Scalar>

@@ -53,11 +53,11 @@ bool isWithin(const Corners& triangle, Real x, Real z) {
     };
     const auto& [a, b, c] = triangle;
     const Real turn = areaOf(a, b, c.x(), c.z()) < 0 ? -1 : 1;
-    return std::all_of(triangle.begin(), triangle.end(), [&](const Point& from) {
-        const Point& to = &from == &a ? b : &from == &b ? c : a;
+    const auto isInside = [&areaOf, turn, x, z](const Point& from, const Point& to) {
         const Real length = std::hypot(to.x() - from.x(), to.z() - from.z());
         return turn * areaOf(from, to, x, z) / length >= -kOnEdge;
-    });
+    };
+    return isInside(a, b) && isInside(b, c) && isInside(c, a);
 }
 
 Real heightOf(const Corners& triangle, Real x, Real z) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 namespace hashphase::demos {
@@ -185,13 +184,15 @@ void BodyLayers::drawSpheres(std::span<const DrawnSphere> spheres, const View& v
 
 void BodyLayers::drawLines(std::span<const DrawnLine> lines) {
     sortedLines_.assign(lines.begin(), lines.end());
-    const auto onTop =
-        std::ranges::stable_partition(sortedLines_, std::logical_not(), &DrawnLine::isOnTop);
+    const auto firstOnTop =
+        std::stable_partition(sortedLines_.begin(), sortedLines_.end(),
+                              [](const DrawnLine& line) { return !line.isOnTop; });
+    const auto onTop = static_cast<std::size_t>(sortedLines_.end() - firstOnTop);
     glUniform1f(lines_.uniform("opacity"), 1);
     lines_.draw<DrawnLine>(sortedLines_);
-    if (!onTop.empty()) {
+    if (onTop > 0) {
         glUniform1f(lines_.uniform("opacity"), kHiddenOpacity);
-        lines_.drawAgain(kHiddenLineState, sortedLines_.size() - onTop.size(), onTop.size());
+        lines_.drawAgain(kHiddenLineState, sortedLines_.size() - onTop, onTop);
     }
 }
 

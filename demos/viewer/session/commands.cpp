@@ -9,8 +9,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <numbers>
-#include <ranges>
 #include <utility>
 
 namespace hashphase::demos {
@@ -36,9 +36,13 @@ Parameter wholeFrom(double low, double high) {
     return {.kind = Kind::whole, .low = low, .high = high};
 }
 
-template <class Names>
-Parameter oneOf(std::string what, const Names& names) {
-    return {.what = std::move(what), .choices = {names.begin(), names.end()}};
+template <class Things, class NameOf = std::identity>
+Parameter oneOf(std::string what, const Things& things, const NameOf& nameOfEach = {}) {
+    Parameter parameter{.what = std::move(what)};
+    for (const auto& each : things) {
+        parameter.choices.emplace_back(std::invoke(nameOfEach, each));
+    }
+    return parameter;
 }
 
 /// Of "a|b|next": the one that is named, or the one after the present one.
@@ -59,8 +63,7 @@ Parameter fileField(std::string_view section, std::string_view name) {
 }
 
 Parameter oneBroadphaseOrNext() {
-    Parameter parameter =
-        oneOf("broadphase", broadphaseKinds() | std::views::transform(&BroadphaseKind::name));
+    Parameter parameter = oneOf("broadphase", broadphaseKinds(), &BroadphaseKind::name);
     parameter.choices.emplace_back("next");
     return parameter;
 }
@@ -298,7 +301,7 @@ std::vector<CommandKind> makeCommands() {
         [](S s, A a) { s.askForSteps(a.has(0) ? a.index(0) : 1); }, {wholeFrom(1, 1e6)});
     add(changes, "effect NAME [on|off]",
         "declare an effect as the scene does, with what it needs, or take it back", effect,
-        {oneOf("effect", kAllEffects | std::views::transform(nameOf))});
+        {oneOf("effect", kAllEffects, nameOf)});
     add(changes, "broadphase NAME|next", "who finds the pairs; the next one that is quick enough",
         broadphase, {oneBroadphaseOrNext()});
     add(shows, "check [on|off]", "compare all pairs with the exact ones",

@@ -10,7 +10,7 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <ranges>
+#include <functional>
 
 namespace hashphase::demos {
 
@@ -135,14 +135,14 @@ struct Panel::Switches {
         }
     }
 
-    /// One of these names; the command is "what NAME".
-    template <class Names>
-    void choose(const char* label, const std::string& now, const char* what,
-                const Names& names) const {
+    /// The name of one of these; the command is "what NAME".
+    template <class Things, class NameOf = std::identity>
+    void choose(const char* label, const std::string& now, const char* what, const Things& things,
+                const NameOf& nameOf = {}) const {
         ImGui::SetNextItemWidth(kItemWidth);
         if (ImGui::BeginCombo(label, now.c_str())) {
-            for (const auto& each : names) {
-                const std::string name(each);
+            for (const auto& each : things) {
+                const std::string name(std::invoke(nameOf, each));
                 if (ImGui::Selectable(name.c_str(), name == now)) {
                     run(what + (' ' + name));
                 }
@@ -200,7 +200,7 @@ void Panel::Switches::showScene(double frameSeconds) const {
     press("step (O)", "step");
     press("restart (R)", "restart");
     press("help (F1)", "help");
-    choose("scene", title, "scene", viewerScenes() | std::views::transform(&ViewerScene::name));
+    choose("scene", title, "scene", viewerScenes(), &ViewerScene::name);
 }
 
 void Panel::Switches::showEffects() const {
@@ -233,7 +233,7 @@ void Panel::Switches::showGrid() const {
         return;
     }
     choose("broadphase (B)", std::string(session.stage->broadphase().name), "broadphase",
-           broadphaseKinds() | std::views::transform(&BroadphaseKind::name));
+           broadphaseKinds(), &BroadphaseKind::name);
     check("verify all pairs (V)", session.isChecking, "check");
     const GridConfig config = session.stage->effects().grid;
     slide("cell size [m]", config.cellSize, 0, 100, "cell", 1,
