@@ -18,11 +18,11 @@
 // After Ericson, "Real-Time Collision Detection", 5.5.8, with the comparison made exact.
 
 #include <broadphase/aabb.hpp>
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/regions.hpp>
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include <broadphase/core/hide_macros.hpp>
@@ -92,7 +92,7 @@ template <class Scalar>
         end = opens < end ? opens : end;
     }
     // No NaN, and nothing infinite, not even an inverse.
-    const bool isUsual = (sum < std::numeric_limits<double>::max()) & !isTiny;
+    const bool isUsual = detail::isFinite(sum) & !isTiny;
     if (isUsual && neverMeet) {
         return std::nullopt;
     }

@@ -7,6 +7,7 @@
 #include <broadphase/cells_region.hpp>
 #include <broadphase/collectors.hpp>
 #include <broadphase/grid.hpp>
+#include <broadphase/moving_box.hpp>
 #include <broadphase/nearest.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/pairs.hpp>
@@ -181,6 +182,50 @@ void moveWhatIsNoNumber(World<Scalar>& world) {
     printFound("all", world, BoxRegion<Scalar>{boxAround<Scalar>({32, 32, 32}, infinity)});
 }
 
+// Every number of a box and of its way in turn is none, or infinite.
+template <class Scalar>
+void meetOnTheWay(World<Scalar>& world) {
+    const MovingBox<Scalar> usual{boxAround<Scalar>({32, 32, 32}, Scalar(4)), {24, -20, 16}};
+    printFound("way", world, MovingBoxRegion<Scalar>(usual));
+    for (const std::uint64_t bits : {kNanBits, kInfinityBits}) {
+        for (int place = 0; place < 9; ++place) {
+            MovingBox<Scalar> moving = usual;
+            const auto part = place / 3;
+            (part == 0   ? moving.box.min()
+             : part == 1 ? moving.box.max()
+                         : moving.displacement)[place % 3] = special<Scalar>(bits);
+            const MovingBox<Scalar> wall{boxAround<Scalar>({40, 20, 40}, Scalar(4))};
+            std::printf("%d %d ", firstContact(moving, wall) ? 1 : 0,
+                        firstContact(wall, moving) ? 1 : 0);
+            printFound("way", world, MovingBoxRegion<Scalar>(moving));
+        }
+    }
+}
+
+// Proxies on their way, some of them to nowhere.
+template <class Scalar>
+void sweep(World<Scalar>& world) {
+    Sweeps<Scalar> sweeps(world.grid);
+    Pairs<Scalar> pairs(world.grid, &sweeps);
+    for (std::size_t i = 0; i < world.ids.size(); i += 5) {
+        Vector3<Scalar> displacement(Scalar(i % 32), -8, 8);
+        if (i % 4 == 0) {
+            displacement[static_cast<int>(i % 3)] =
+                special<Scalar>(i % 8 == 0 ? kNanBits : kInfinityBits);
+        }
+        sweeps.set(world.ids[i], displacement);
+    }
+    const PairChanges changes = pairs.update();
+    std::printf("sweeps: %u born, %s\n", static_cast<unsigned>(changes.born.size()),
+                pairs.validate().c_str());
+    for (const Scalar x : {Scalar(20), special<Scalar>(kNanBits)}) {
+        std::vector<ProxyId> found;
+        CollectAll all(found);
+        sweeps.visit(SphereRegion<Scalar>({x, 20, 20}, Scalar(16)), all);
+        std::printf("swept: %u, %lx\n", static_cast<unsigned>(found.size()), digest(found));
+    }
+}
+
 template <class Scalar>
 void ask(World<Scalar>& world) {
     const Scalar nan = special<Scalar>(kNanBits);
@@ -203,10 +248,12 @@ void ask(World<Scalar>& world) {
         printFound("sphere", world, SphereRegion<Scalar>(middle, radius));
         printFound("position", world, PositionRegion<Scalar>(middle, radius));
     }
-    std::vector<KeyedProxy<Scalar>> nearest;
-    findNearest(world.grid, Vector3<Scalar>(31.5F, 30.25F, 29), 5, infinity, nearest);
-    for (const KeyedProxy<Scalar>& each : nearest) {
-        std::printf("nearest: %u, %.3f\n", each.id.index, static_cast<double>(each.key));
+    for (const Scalar distance : {infinity, nan, Scalar(8)}) {
+        std::vector<KeyedProxy<Scalar>> nearest;
+        findNearest(world.grid, Vector3<Scalar>(31.5F, 30.25F, 29), 5, distance, nearest);
+        for (const KeyedProxy<Scalar>& each : nearest) {
+            std::printf("nearest: %u, %.3f\n", each.id.index, static_cast<double>(each.key));
+        }
     }
     Neighbours<Scalar> neighbours;
     std::printf("neighbours: %u\n", static_cast<unsigned>(neighbours.find(world.grid, 3).size()));
@@ -297,8 +344,12 @@ void run() {
     World<Scalar> world;
     look(world);
     ask(world);
+    meetOnTheWay(world);
     moveWhatIsNoNumber(world);
     ask(world);
+    meetOnTheWay(world);
+    World<Scalar> moving;
+    sweep(moving);
     live<Scalar>();
 }
 
