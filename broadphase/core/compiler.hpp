@@ -20,7 +20,8 @@
 // HASHPHASE_STANDARD_LIBRARY  the name of a symbol that says which standard library this is, where programs
 //                             and libraries may be at odds about it (core/same_library.hpp)
 // HASHPHASE_HAS_EXCEPTIONS    1 where this code is compiled with exceptions (without -fno-exceptions)
-// HASHPHASE_HAS_RTTI          1 where this code is compiled with RTTI (without -fno-rtti)
+// HASHPHASE_HAS_RTTI          1 where this code is compiled with RTTI (without -fno-rtti), and an object tells
+//                             whether its class was. With MSVC none tells, and Bullet is compiled without
 // HASHPHASE_IS_OPTIMISED      1 where this code is optimised. MSVC does not say; there, 1 without its run-time
 //                             library for debugging
 // HASHPHASE_OVERLOOKS_NAN     1 where comparisons may be compiled as if no number were NaN or infinite
@@ -72,7 +73,8 @@
 #define HASHPHASE_LIFETIME_BOUND maybe_unused
 #endif
 
-#if defined(__SSE2__) || defined(_M_X64) || (defined(_M_IX86_FP) && _M_IX86_FP >= 2)
+#if defined(__SSE2__) || (defined(_M_X64) && !defined(_M_ARM64EC)) || \
+    (defined(_M_IX86_FP) && _M_IX86_FP >= 2)
 #define HASHPHASE_HAS_SSE2 1
 #else
 #define HASHPHASE_HAS_SSE2 0
@@ -96,6 +98,10 @@
 #define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledWithout_GLIBCXX_USE_CXX11_ABI
 #elif defined(__GLIBCXX__)
 #define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledFor_libstdcxx
+#elif defined(_ITERATOR_DEBUG_LEVEL) && _ITERATOR_DEBUG_LEVEL == 2
+#define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledWith_ITERATOR_DEBUG_LEVEL_2
+#elif defined(_ITERATOR_DEBUG_LEVEL) && _ITERATOR_DEBUG_LEVEL == 1
+#define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledWith_ITERATOR_DEBUG_LEVEL_1
 #else
 #define HASHPHASE_STANDARD_LIBRARY librariesAreCompiledForAnyStandardLibrary
 #endif
@@ -105,7 +111,7 @@
 #else
 #define HASHPHASE_HAS_EXCEPTIONS 0
 #endif
-#if defined(__cpp_rtti) || defined(_CPPRTTI)
+#if defined(__cpp_rtti) && !defined(_MSC_VER)
 #define HASHPHASE_HAS_RTTI 1
 #else
 #define HASHPHASE_HAS_RTTI 0
@@ -198,15 +204,15 @@ template <std::floating_point Scalar>
 }
 
 /// Whether dynamic_cast may ask an object, which has virtual functions: its class, and this code, were
-/// compiled with RTTI. (Where that is not seen in the object, only this code is looked at.)
+/// compiled with RTTI.
 template <class Object>
 [[nodiscard]] bool knowsItsType([[maybe_unused]] const Object& object) noexcept {
-#if HASHPHASE_HAS_RTTI && (defined(__clang__) || defined(__GNUC__)) && !defined(_MSC_VER)
+#if HASHPHASE_HAS_RTTI
     const void* const* virtualTable = nullptr;
     std::memcpy(&virtualTable, static_cast<const void*>(&object), sizeof(virtualTable));
     return virtualTable[-1] != nullptr;
 #else
-    return HASHPHASE_HAS_RTTI != 0;
+    return false;
 #endif
 }
 

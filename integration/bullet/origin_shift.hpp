@@ -13,7 +13,7 @@
 // Misuse    Soft bodies and multibodies keep coordinates that are not known here. A world with such bodies,
 //           and a shift that is not finite, are asserted: then nothing is shifted, and false is returned.
 // RTTI      None is needed for a btDynamicsWorld, or what is derived from it. A btCollisionWorld is asked
-//           whether it is one; where it cannot say (-fno-rtti), and has rigid bodies, that is asserted, too.
+//           whether it is one; where it cannot say (-fno-rtti, MSVC) and has rigid bodies, that is asserted, too.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>

@@ -282,8 +282,10 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
     std::vector<PairSortKey> notes = notesOfAll(proxies);
     places_.clear();
     detail::ensureCapacity(places_, notes.size());
-    const detail::OnFailure close([&] { closeVacant(); });
-    vacateAll(notes, dispatcher, remover);
+    {
+        const detail::OnFailure close([&] { closeVacant(); });
+        vacateAll(notes, dispatcher, remover);
+    }
     closeVacant();
     scratch_ = std::move(notes);
     freeRetiredAsListed();

@@ -140,7 +140,7 @@ build_preset() (
     fi
     steps=$(cmake --build "$build" ${1:+--target "$@"} -- -n 2>/dev/null | grep -c '^\[' || true)
     if ((steps > 3)); then
-        cores=$(nproc)
+        cores=$(getconf _NPROCESSORS_ONLN)
         say "building build/$preset: $steps steps, about $(((steps * 4 / cores + 9) / 10 * 10)) s on" \
             "$cores cores"
     fi

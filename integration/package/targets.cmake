@@ -10,6 +10,11 @@ if(MSVC AND MSVC_VERSION LESS 1930)
     message(FATAL_ERROR "hashphase needs Visual Studio 2022 or newer.")
 endif()
 
+# The run-time libraries of MSVC for Debug and for the rest do not mix: one folder has room for both of ours.
+if(MSVC AND NOT DEFINED CMAKE_DEBUG_POSTFIX)
+    set(CMAKE_DEBUG_POSTFIX d)
+endif()
+
 # Before version 1.0 every minor version may change what programs have compiled in; from then on only
 # a major version may (integration/guide/abi.md).
 if(PROJECT_VERSION_MAJOR EQUAL 0)
@@ -40,8 +45,10 @@ function(hashphase_own_target target)
             ${target} PRIVATE /W4 /permissive- /Zc:__cplusplus /bigobj /utf-8 /fp:precise
                               $<IF:$<CXX_COMPILER_ID:MSVC>,/Zc:preprocessor,/clang:-ffp-contract=off>)
         if(BUILD_SHARED_LIBS)
-            # That a class of a DLL has members of the standard library is meant (integration/guide/abi.md).
-            target_compile_options(${target} PUBLIC /wd4251 /wd4275)
+            # That a class of a DLL has members of the standard library is meant (integration/guide/abi.md). The
+            # installed headers are the system's, of which nobody is warned.
+            set(meant $<$<COMPILE_LANGUAGE:CXX>:/wd4251> $<$<COMPILE_LANGUAGE:CXX>:/wd4275>)
+            target_compile_options(${target} PRIVATE ${meant} INTERFACE "$<BUILD_INTERFACE:${meant}>")
         endif()
     elseif(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
         set(falseAlarms "")

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numeric>
 #include <random>
 #include <set>
@@ -143,6 +144,33 @@ TEST(PairCacheBatch, LetsBirthsTakeThePlacesOfDeathsAndMovesNothingElse) {
     side.update({{0, 1}, {8, 9}, {14, 15}, {12, 13}}, {{0, 2}});
     EXPECT_EQ(side.list(), (std::vector<Uids>{{0, 2}, {10, 11}, {4, 5}}))
         << "places left are filled from the end";
+    EXPECT_EQ(side.cache.validate(), "");
+}
+
+TEST(PairCacheBatch, IsWholeWhereTheDispatcherThrows) {
+    struct Throwing : btCollisionDispatcher {
+        using btCollisionDispatcher::btCollisionDispatcher;
+        void freeCollisionAlgorithm(void* memory) override {
+            btCollisionDispatcher::freeCollisionAlgorithm(memory);
+            throw std::runtime_error("freeCollisionAlgorithm");
+        }
+    };
+    CacheSide side;
+    side.addBand();
+    side.giveAlgorithms();
+    Throwing throwing(&side.configuration);
+    const std::array gone{side.proxy(3), side.proxy(4), side.proxy(5), side.proxy(6),
+                          side.proxy(90)};
+    EXPECT_THROW(side.cache.removeOverlappingPairsContainingProxies(gone, &throwing),
+                 std::runtime_error);
+    EXPECT_EQ(side.cache.validate(), "");
+    const std::vector<Uids> left = side.list();
+    EXPECT_GT(left.size(), 300U);
+    for (const auto& [a, b] : left) {
+        EXPECT_FALSE((a >= 3 && a <= 6) || (b >= 3 && b <= 6) || a == 90 || b == 90)
+            << a << ", " << b;
+    }
+    side.update({{0, 1}}, {{0, 100}});
     EXPECT_EQ(side.cache.validate(), "");
 }
 

@@ -14,6 +14,7 @@ get_filename_component(SOURCE_PATH "${CMAKE_CURRENT_LIST_DIR}/../../../.." ABSOL
 vcpkg_cmake_configure(
     SOURCE_PATH "${SOURCE_PATH}"
     OPTIONS
+        -DCMAKE_DEBUG_POSTFIX=
         -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
         -DHASHPHASE_BUILD_DEMOS=OFF
         -DHASHPHASE_BUILD_TESTS=OFF
