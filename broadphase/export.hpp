@@ -11,6 +11,8 @@
 //                              is exported for one that each source instantiates
 // HASHPHASE_ONE_FOR_ALL        before a thread_local variable in a header that all libraries of a program share
 // HASHPHASE_SHARES_VARIABLES   1 where they can. DLLs call a function of the one that has it.
+// HASHPHASE_ASK_LINKER_FOR(x)  asks for the variable hashphase::x, a const char of the grid's library, where
+//                              the compiler leaves out what nothing uses: it does not link without
 
 // Every public header includes this one before any code that older standards reject.
 #if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L
@@ -54,4 +56,17 @@
 #else
 #define HASHPHASE_BROADPHASE_EXPORT HASHPHASE_SYMBOL_IMPORT
 #define HASHPHASE_BROADPHASE_TEMPLATE_EXPORT HASHPHASE_SYMBOL_IMPORT
+#endif
+
+#if !defined(_MSC_VER)
+#define HASHPHASE_ASK_LINKER_FOR(name)
+#else
+#if HASHPHASE_SHARED && !defined(hashphase_broadphase_EXPORTS)
+#define HASHPHASE_LINKER_NAME(name) "__imp_?" name "@hashphase@@3DB"
+#else
+#define HASHPHASE_LINKER_NAME(name) "?" name "@hashphase@@3DB"
+#endif
+#define HASHPHASE_ASK_LINKER_BY_NAME(name)                                                         \
+    __pragma(comment(linker, "/include:" HASHPHASE_LINKER_NAME(#name)))
+#define HASHPHASE_ASK_LINKER_FOR(name) HASHPHASE_ASK_LINKER_BY_NAME(name)
 #endif

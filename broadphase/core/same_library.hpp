@@ -14,6 +14,7 @@ extern HASHPHASE_BROADPHASE_EXPORT const char HASHPHASE_STANDARD_LIBRARY;
 
 namespace detail {
 
+HASHPHASE_ASK_LINKER_FOR(HASHPHASE_STANDARD_LIBRARY)
 [[HASHPHASE_KEPT]] static const char* const kStandardLibrary = &HASHPHASE_STANDARD_LIBRARY;
 
 }  // namespace detail

@@ -43,7 +43,8 @@ bool shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase
         return shiftWorldOrigin(*dynamics, broadphase, shift);
     }
     const bool isKnown = !mayHaveJoints(world);
-    HASHPHASE_ASSERT(isKnown, "Without RTTI, a world with bodies is shifted as a btDynamicsWorld.");
+    HASHPHASE_ASSERT(
+        isKnown, "A world with bodies that cannot tell its type is shifted as a btDynamicsWorld.");
     return isKnown && detail::shiftWorldWithoutJoints(world, broadphase, shift);
 }
 

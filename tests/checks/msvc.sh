@@ -52,6 +52,9 @@ check_msvc() (
     export -f as_msvc msvc_compiles
     outcomes=$(printf '%s\n' "${sources[@]}" | xargs -P2 -L1 bash -c 'msvc_compiles "$@"' msvc_compiles)
     passed=$(grep -c passed <<<"$outcomes" || true)
+    # Where the program's standard library is another one.
+    as_msvc -include "$headers/standard.hpp" -c -x c++ broadphase/core/same_library.hpp -o "$build/same_library.obj"
     say "libraries and kernels in MSVC's dialect: $passed passed, $((${#sources[@]} - passed)) failed, 0 skipped"
-    ((passed == ${#sources[@]}))
+    ((passed == ${#sources[@]})) &&
+        grep -qa '/include:__imp_?librariesAreCompiledFor_libcxx@hashphase@@' "$build/same_library.obj"
 )

@@ -67,7 +67,7 @@ Vector3<Scalar> pointIn(Random& random, int size) {
 
 template <class Scalar>
 struct World {
-    World() : pairs(grid) {
+    World() : sweeps(grid), pairs(grid, &sweeps) {
         Random random;
         for (int i = 0; i < 500; ++i) {
             const Vector3<Scalar> low = pointIn<Scalar>(random, 64);
@@ -76,6 +76,7 @@ struct World {
         }
     }
     Grid<Scalar> grid;
+    Sweeps<Scalar> sweeps;
     Pairs<Scalar> pairs;
     std::vector<ProxyId> ids;
 };
@@ -205,23 +206,19 @@ void meetOnTheWay(World<Scalar>& world) {
 // Proxies on their way, some of them to nowhere.
 template <class Scalar>
 void sweep(World<Scalar>& world) {
-    Sweeps<Scalar> sweeps(world.grid);
-    Pairs<Scalar> pairs(world.grid, &sweeps);
     for (std::size_t i = 0; i < world.ids.size(); i += 5) {
         Vector3<Scalar> displacement(Scalar(i % 32), -8, 8);
         if (i % 4 == 0) {
             displacement[static_cast<int>(i % 3)] =
                 special<Scalar>(i % 8 == 0 ? kNanBits : kInfinityBits);
         }
-        sweeps.set(world.ids[i], displacement);
+        world.sweeps.set(world.ids[i], displacement);
     }
-    const PairChanges changes = pairs.update();
-    std::printf("sweeps: %u born, %s\n", static_cast<unsigned>(changes.born.size()),
-                pairs.validate().c_str());
+    printPairs("sweeps", world);
     for (const Scalar x : {Scalar(20), special<Scalar>(kNanBits)}) {
         std::vector<ProxyId> found;
         CollectAll all(found);
-        sweeps.visit(SphereRegion<Scalar>({x, 20, 20}, Scalar(16)), all);
+        world.sweeps.visit(SphereRegion<Scalar>({x, 20, 20}, Scalar(16)), all);
         std::printf("swept: %u, %lx\n", static_cast<unsigned>(found.size()), digest(found));
     }
 }
@@ -348,8 +345,7 @@ void run() {
     moveWhatIsNoNumber(world);
     ask(world);
     meetOnTheWay(world);
-    World<Scalar> moving;
-    sweep(moving);
+    sweep(world);
     live<Scalar>();
 }
 

@@ -58,6 +58,7 @@ class HashphaseConan(ConanFile):
         toolchain.cache_variables["HASHPHASE_BUILD_DEMOS"] = False
         toolchain.cache_variables["HASHPHASE_BUILD_TESTS"] = False
         toolchain.cache_variables["HASHPHASE_WARNINGS_AS_ERRORS"] = False
+        toolchain.cache_variables["CMAKE_DEBUG_POSTFIX"] = ""  # a package for each build type
         # Whoever compiles against the package is told the same (package_info).
         toolchain.cache_variables["HASHPHASE_ASSERTS"] = self._has_asserts
         toolchain.generate()
