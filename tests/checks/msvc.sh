@@ -55,6 +55,9 @@ check_msvc() (
     # Where the program's standard library is another one.
     as_msvc -include "$headers/standard.hpp" -c -x c++ broadphase/core/same_library.hpp -o "$build/same_library.obj"
     say "libraries and kernels in MSVC's dialect: $passed passed, $((${#sources[@]} - passed)) failed, 0 skipped"
-    ((passed == ${#sources[@]})) &&
-        grep -qa '/include:__imp_?librariesAreCompiledFor_libcxx@hashphase@@' "$build/same_library.obj"
+    grep -qa '/include:__imp_?librariesAreCompiledFor_libcxx@hashphase@@' "$build/same_library.obj" || {
+        say "broadphase/core/same_library.hpp does not ask the linker for the name of the standard library"
+        exit 1
+    }
+    ((passed == ${#sources[@]}))
 )
