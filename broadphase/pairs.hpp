@@ -147,6 +147,14 @@ public:
     /// While remembersPairs(), it only says whether count() is their number, and each overlaps or is swept.
     [[nodiscard]] std::string validate() const;
 
+    // --- For the library's own parts -------------------------------------------------------------
+
+    [[nodiscard]] Grid<Scalar>& grid() const noexcept { return grid_; }
+    [[nodiscard]] Sweeps<Scalar>* sweeps() const noexcept { return sweeps_; }
+    /// What the pairs are made of. It may change with any version.
+    [[nodiscard]] detail::PairState<Scalar>& state() noexcept { return state_; }
+    [[nodiscard]] const detail::PairState<Scalar>& state() const noexcept { return state_; }
+
 private:
     Grid<Scalar>& grid_;
     Sweeps<Scalar>* sweeps_;

@@ -17,6 +17,7 @@
 //           std::length_error, and the set is as it was.
 
 #include <broadphase/core/compiler.hpp>
+#include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/limits.hpp>
 #include <broadphase/core/parted_blocks.hpp>
 #include <broadphase/diagnostics.hpp>
@@ -282,6 +283,16 @@ public:
         return static_cast<std::size_t>(used) == keys_.size()
                    ? ""
                    : "There are as many numbers in the table as keys: broken.";
+    }
+
+    /// See core/copy_parts.hpp.
+    void makeRoomFor(const FlatSet& from) { ensureCapacity(keys_, from.sizeLimit_); }
+    template <class Visit>
+    static void forEachPart(FlatSet& to, const FlatSet& from, const Visit& visit) {
+        visit(to.groups_, from.groups_);
+        visit(to.keys_, from.keys_);
+        visit(to.sizeLimit_, from.sizeLimit_);
+        visit(to.shift_, from.shift_);
     }
 
 private:

@@ -96,6 +96,20 @@ public:
         return all;
     }
 
+    /// See core/copy_parts.hpp. What is made here refuses all until it is written.
+    void makeRoomFor(const GroupKinds& from) {
+        if (from.known_ != nullptr && known_ == nullptr) {
+            known_ = std::make_unique<Known>();
+            known_->refused.fill(~Set{0});
+        }
+    }
+    template <class Visit>
+    static void forEachPart(GroupKinds& to, const GroupKinds& from, const Visit& visit) {
+        visit(to.known_, from.known_);
+        visit(to.count_, from.count_);
+        visit(to.someRefuse_, from.someRefuse_);
+    }
+
 private:
     struct Known {
         std::array<ProxyGroups, kOther> kinds{};  // the first count_

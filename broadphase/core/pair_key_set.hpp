@@ -70,6 +70,14 @@ public:
                (next_.capacity() + firstOf_.capacity()) * sizeof(std::uint32_t);
     }
 
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(PairKeySet& to, const PairKeySet& from, const Visit& visit) {
+        visit(to.keys_, from.keys_);
+        visit(to.next_, from.next_);
+        visit(to.firstOf_, from.firstOf_);
+    }
+
 private:
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 

@@ -4,6 +4,7 @@
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/diagnostics.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -34,6 +35,13 @@ public:
     [[nodiscard]] const Item* begin() const noexcept { return room_.data(); }
     [[nodiscard]] const Item* end() const noexcept { return room_.data() + size_; }
     [[nodiscard]] std::size_t capacity() const noexcept { return room_.size(); }
+
+    /// See core/copy_parts.hpp.
+    void makeRoomFor(const RoomyList& from) { reserve(from.size()); }
+    void copyFrom(const RoomyList& from) noexcept {
+        size_ = from.size_;
+        std::copy(from.begin(), from.end(), room_.begin());
+    }
 
 private:
     std::vector<Item> room_;

@@ -67,6 +67,16 @@ public:
                buckets_.capacity() * sizeof(std::uint32_t);
     }
 
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(LevelLayout& to, const LevelLayout& from, const Visit& visit) {
+        visit(to.sizes_, from.sizes_);
+        visit(to.origin_, from.origin_);
+        visit(to.middle_, from.middle_);
+        visit(to.countWhenChosen_, from.countWhenChosen_);
+        visit(to.buildsSinceChosen_, from.buildsSinceChosen_);
+    }
+
 private:
     void layOutDense(Level<Scalar>& level, const CellReach& reach) const;
     void layOutHashed(Level<Scalar>& level, const CellReach& reach, std::uint32_t count,

@@ -139,6 +139,30 @@ public:
     }
     [[nodiscard]] std::string validate(BoxOfEntry filedBox) const;
 
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(Table& to, const Table& from, const Visit& visit) {
+        forEachPartToBuildOn(to, from, visit);
+        visit(to.largestBucket_, from.largestBucket_);
+        visit(to.proxyIndices_, from.proxyIndices_);
+        visit(to.order_, from.order_);
+        visit(to.bucketOfEntry_, from.bucketOfEntry_);
+        visit(to.sortedBuckets_, from.sortedBuckets_);
+        visit(to.bounds_, from.bounds_);
+        visit(to.settled_, from.settled_);
+    }
+    void finishCopy() noexcept { linkLevels(); }
+    /// The same of what the next build() goes by, and not what is filed.
+    template <class Visit>
+    static void forEachPartToBuildOn(Table& to, const Table& from, const Visit& visit) {
+        visit(to.layout_, from.layout_);
+        visit(to.strayCount_, from.strayCount_);
+        visit(to.straysWhenChosen_, from.straysWhenChosen_);
+        visit(to.listedWhenChosen_, from.listedWhenChosen_);
+        visit(to.levels_, from.levels_);
+        visit(to.bucketStart_, from.bucketStart_);
+    }
+
 private:
     using Bounds = std::array<std::vector<Scalar>, 6>;
 
@@ -148,6 +172,13 @@ private:
         // The least corners by which entries are filed, where searches ask for them.
         std::array<std::vector<Scalar>, 3> filedLow;
         bool isRefreshed = false;
+
+        template <class Visit>
+        static void forEachPart(Settled& to, const Settled& from, const Visit& visit) {
+            visit(to.before, from.before);
+            visit(to.filedLow, from.filedLow);
+            visit(to.isRefreshed, from.isRefreshed);
+        }
     };
 
     [[nodiscard]] static Aabb<Scalar> boxAt(const Bounds& bounds, std::uint32_t entry) noexcept {

@@ -43,8 +43,10 @@ void forEachOverlapAtUpdate(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
         }
     };
     const Aabb<Scalar> before = pairs.store.before(proxyIndex);
-    const Aabb<Scalar> inTable = last.isOwn() ? pairs.store.boxAtUpdate(proxyIndex) : before;
-    forEachTouching(pairs.scratch, *last.table, inTable, visitIfTheyDid);
+    const Aabb<Scalar> inTable = last.place == LastUpdate<Scalar>::Place::ownTable
+                                     ? pairs.store.boxAtUpdate(proxyIndex)
+                                     : before;
+    forEachTouching(pairs.scratch, last.table(), inTable, visitIfTheyDid);
     forEachTouching(pairs.scratch, pairs.tables.resting, before, visitIfTheyDid);
     for (std::size_t i = last.indexedWoken; i < proxies.woken.size(); ++i) {
         visitIfTheyDid(proxies.woken[i]);
@@ -93,7 +95,7 @@ void forEachKnown(PairState<Scalar>& pairs, const Visit& visit) {
         }
     };
     pairs.lastUpdate.index(0);
-    const Table<Scalar>& table = *pairs.lastUpdate.table;
+    const Table<Scalar>& table = pairs.lastUpdate.table();
     KernelCost cost;
     forOverlaps(table, groups, cost, visitIfTheyDid);
     forOverlaps(resting, groups, cost, visitIfTheyDid);

@@ -34,6 +34,15 @@ struct Pile {
     FlatSet sampled;
     std::vector<char> sampledAccepted;
 
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(Pile& to, const Pile& from, const Visit& visit) {
+        visit(to.pairs, from.pairs);
+        visit(to.hasPairs, from.hasPairs);
+        visit(to.updatesUntilLook, from.updatesUntilLook);
+        visit(to.lookInterval, from.lookInterval);
+    }
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + pairs.memoryBytes() + sampled.memoryBytes() +
                turned.capacity() * sizeof(PairKey) + sampledAccepted.capacity();
@@ -58,6 +67,13 @@ struct SweptPairs {
     void advance() noexcept {
         atUpdate.swap(now);
         bySecond.clear();
+    }
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(SweptPairs& to, const SweptPairs& from, const Visit& visit) {
+        visit(to.atUpdate, from.atUpdate);
+        visit(to.now, from.now);
+        visit(to.bySecond, from.bySecond);
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return (atUpdate.capacity() + now.capacity() + bySecond.capacity()) * sizeof(PairKey);
@@ -106,6 +122,18 @@ struct KnownPairs {
         return refused.memoryBytes() + refusedAtRest.memoryBytes() + kept.memoryBytes() +
                immediate.memoryBytes() + swept.memoryBytes() +
                (pile != nullptr ? pile->memoryBytes() : 0);
+    }
+
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(KnownPairs& to, const KnownPairs& from, const Visit& visit) {
+        visit(to.refused, from.refused);
+        visit(to.refusedAtRest, from.refusedAtRest);
+        visit(to.pile, from.pile);
+        visit(to.kept, from.kept);
+        visit(to.immediate, from.immediate);
+        visit(to.swept, from.swept);
+        visit(to.count, from.count);
     }
 
     /// Returns whether the candidate was refused.

@@ -46,6 +46,14 @@ struct SettledPairs {
         overlapped.clear();
         firstOf.clear();
     }
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(SettledPairs& to, const SettledPairs& from, const Visit& visit) {
+        visit(to.pairs, from.pairs);
+        visit(to.overlapped, from.overlapped);
+        visit(to.pairsOf, from.pairsOf);
+        visit(to.firstOf, from.firstOf);
+    }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + pairs.memoryBytes() + overlapped.capacity() +
                begun.capacity() * sizeof(PairKey) + turnedInPart.capacity() * sizeof(std::size_t) +
@@ -62,6 +70,14 @@ struct WatchedPairs {
     PairList toResting;                     // b is a proxyIndex
     PairList carried;                       // scratch
     std::unique_ptr<SettledPairs> settled;  // made when the first ones settle
+
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(WatchedPairs& to, const WatchedPairs& from, const Visit& visit) {
+        visit(to.amongMobile, from.amongMobile);
+        visit(to.toResting, from.toResting);
+        visit(to.settled, from.settled);
+    }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return amongMobile.memoryBytes() + toResting.memoryBytes() + carried.memoryBytes() +
@@ -122,6 +138,17 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT PairState {
 
     /// From now on follows these ways, or with null none.
     void setSweeping(Sweeping<Scalar>* next);
+
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(PairState& to, const PairState& from, const Visit& visit) {
+        visit(to.watched, from.watched);
+        visit(to.known, from.known);
+        visit(to.lastUpdate, from.lastUpdate);
+        visit(to.cost, from.cost);
+        visit(to.peaks, from.peaks);
+        visit(to.fewImmediate, from.fewImmediate);
+    }
 
     // --- A candidate -----------------------------------------------------------------------------
 

@@ -56,7 +56,7 @@ void recoverPairs(PairState<Scalar>& pairs) {
     known.refusedAtRest.clear();
     pairs.proxies.woken.clear();
     pairs.proxies.mobileAtUpdate = pairs.proxies.mobile.size();
-    pairs.lastUpdate.take(table);
+    pairs.lastUpdate.take(LastUpdate<Scalar>::Place::ownTable);
     store.mustRebuildPairs = false;
 }
 
@@ -129,7 +129,7 @@ void publish(PairState<Scalar>& pairs,
     }
     if (isFiled) {
         known.swept.advance();
-        pairs.lastUpdate.take(pairs.tables.mobile);
+        pairs.lastUpdate.take(LastUpdate<Scalar>::Place::mobileTable);
     }
     pairs.markImmediate(known.immediate.keys(), false);
     known.immediate.clear();

@@ -30,6 +30,16 @@ void PairList::shrink() {
     }
 }
 
+void PairList::makeRoomFor(const PairList& from) {
+    if (capacity_ < from.size_) {
+        PairList fresh;
+        static_cast<void>(fresh.resize(from.size_));
+        fresh.size_ = size_;
+        std::copy_n(data_.get(), size_, fresh.data_.get());
+        swap(fresh);
+    }
+}
+
 IndexPair* PairList::resize(std::size_t count) {
     if (capacity_ < count) {
         append([&](PairSink& sink) { grow(sink, count); });

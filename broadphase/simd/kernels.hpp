@@ -90,6 +90,13 @@ public:
     /// Gives back room for more pairs than there are. Where memory runs out, nothing has changed.
     void shrink();
 
+    /// See core/copy_parts.hpp.
+    void makeRoomFor(const PairList& from);
+    void copyFrom(const PairList& from) noexcept {
+        size_ = from.size_;
+        std::ranges::copy(from.pairs(), data_.get());
+    }
+
     void swap(PairList& other) noexcept {
         data_.swap(other.data_);
         std::swap(size_, other.size_);

@@ -79,6 +79,15 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Motions {
     void drop(std::uint32_t motion) noexcept;
     void makeRoom();
 
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(Motions& to, const Motions& from, const Visit& visit) {
+        visit(to.all, from.all);
+        visit(to.firstVacant, from.firstVacant);
+        visit(to.vacantCount, from.vacantCount);
+        visit(to.ofProxy, from.ofProxy);
+    }
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return all.capacity() * sizeof(all[0]) + ofProxy.capacity() * sizeof(ofProxy[0]);
     }

@@ -41,6 +41,16 @@ void Population<Scalar>::reserveLists(std::size_t count) {
     mobile.reserve(room);  // last: the others have room for as many
 }
 
+// As reserve() and add() do.
+template <class Scalar>
+void Population<Scalar>::makeRoomFor(const Population& from) {
+    reserveRecords(from.records.size());
+    reserveLists(std::min(from.mobile.capacity(), from.records.size()));
+    if (!from.groups.empty()) {
+        groups.reserve(2 * records.capacity());
+    }
+}
+
 template <class Scalar>
 void Population<Scalar>::makeGroups() {
     if (groups.empty()) {

@@ -201,6 +201,32 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Population {
                    sizeof(mobile[0]) +
                boxesAtUpdate.capacity() * sizeof(Box) + indicesAtUpdate.memoryBytes();
     }
+    /// See core/copy_parts.hpp. `number` stays, which stands for no other set than one has been told, and so does what
+    /// reserve() and reports of bad data go by.
+    void makeRoomFor(const Population& from);
+    template <class Visit>
+    static void forEachPart(Population& to, const Population& from, const Visit& visit) {
+        visit(to.records, from.records);
+        visit(to.size, from.size);
+        visit(to.nanCount, from.nanCount);
+        visit(to.updateNumber, from.updateNumber);
+        visit(to.settledChanged, from.settledChanged);
+        visit(to.firstGeneration, from.firstGeneration);
+        visit(to.areRegrouped, from.areRegrouped);
+        visit(to.listNumber, from.listNumber);
+        visit(to.free, from.free);
+        visit(to.removed, from.removed);
+        visit(to.removedImmediate, from.removedImmediate);
+        visit(to.groups, from.groups);
+        visit(to.groupKinds, from.groupKinds);
+        visit(to.mobile, from.mobile);
+        visit(to.mobileAtUpdate, from.mobileAtUpdate);
+        visit(to.woken, from.woken);
+        visit(to.waiting, from.waiting);
+        visit(to.sweeping, from.sweeping);
+        visit(to.boxesAtUpdate, from.boxesAtUpdate);
+        visit(to.indicesAtUpdate, from.indicesAtUpdate);
+    }
     /// Drops free indices at the end, and sorts the others.
     void dropLastRecords();
 };

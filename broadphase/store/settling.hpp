@@ -39,6 +39,17 @@ struct Settling {
     bool areManyChanged = false;
     std::uint32_t stayedCount = 0;  // Table::order() of what rested before, below this
 
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(Settling& to, const Settling& from, const Visit& visit) {
+        visit(to.tremors, from.tremors);
+        visit(to.slackCount, from.slackCount);
+        visit(to.calmCount, from.calmCount);
+        visit(to.changedEntries, from.changedEntries);
+        visit(to.areManyChanged, from.areManyChanged);
+        visit(to.stayedCount, from.stayedCount);
+    }
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + tremors.capacity() * sizeof(tremors[0]) +
                changedEntries.capacity() * sizeof(changedEntries[0]);

@@ -48,6 +48,15 @@ struct Frame {
     std::vector<std::uint32_t> proxyIndices;  // scratch: of what is filed, or has a NaN
     std::vector<PaddedBox<Scalar>> boxes;     // scratch: of what is filed
 
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(Frame& to, const Frame& from, const Visit& visit) {
+        visit(to.idleCount, from.idleCount);
+        visit(to.someAreCalm, from.someAreCalm);
+        visit(to.mobileKinds, from.mobileKinds);
+        visit(to.changedKinds, from.changedKinds);
+    }
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return (now.capacity() + before.capacity() + boxes.capacity()) * sizeof(boxes[0]) +
                proxyIndices.capacity() * sizeof(proxyIndices[0]);
@@ -373,6 +382,22 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Store {
     /// None where cell sizes follow the population.
     [[nodiscard]] LevelSizes fixedSizes() const {
         return config.cellSize > 0 ? fixedLevels(config.cellSize, config.levelRatio) : LevelSizes{};
+    }
+
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(Store& to, const Store& from, const Visit& visit) {
+        visit(to.proxies, from.proxies);
+        visit(to.tables, from.tables);
+        visit(to.frame, from.frame);
+        visit(to.settling, from.settling);
+        visit(to.cost, from.cost);
+        visit(to.shiftCount, from.shiftCount);
+        visit(to.peaks, from.peaks);
+        visit(to.mobilePeaks, from.mobilePeaks);
+        visit(to.maySettleWithSlack, from.maySettleWithSlack);
+        visit(to.observedEach, from.observedEach);
+        visit(to.mustRebuildPairs, from.mustRebuildPairs);
     }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;

@@ -54,6 +54,16 @@ struct FiledTable : Table<Scalar> {
                walked.load(std::memory_order_relaxed) + (rayCount - 1) * this->size() >=
                    kTree * (this->size() + std::uint64_t{64});
     }
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(FiledTable& to, const FiledTable& from, const Visit& visit) {
+        visit(static_cast<Table<Scalar>&>(to), static_cast<const Table<Scalar>&>(from));
+        if (!from.isTreeStale.load(std::memory_order_relaxed)) {
+            visit(to.tree, from.tree);
+        }
+        visit(to.isTreeStale, from.isTreeStale);
+        visit(to.walked, from.walked);
+    }
     void swap(FiledTable& other) noexcept {
         std::swap(static_cast<Table<Scalar>&>(*this), static_cast<Table<Scalar>&>(other));
         std::swap(tree, other.tree);
@@ -123,6 +133,33 @@ struct Tables {
                 visit(*late);
             }
         }
+    }
+
+    /// What is copied: core/copy_parts.hpp.
+    void makeRoomFor(const Tables& from) {
+        if (from.fresh != nullptr && fresh == nullptr) {
+            fresh = std::make_unique<FiledTable<Scalar>>();
+        }
+    }
+    template <class Visit>
+    static void forEachPart(Tables& to, const Tables& from, const Visit& visit) {
+        visit(to.mobile, from.mobile);
+        visit(to.resting, from.resting);
+        visit(to.sweeping, from.sweeping);
+        if (from.fresh == nullptr || from.isFresh.load(std::memory_order_relaxed)) {
+            visit(to.fresh, from.fresh);
+        } else {
+            Table<Scalar>::forEachPartToBuildOn(*to.fresh, *from.fresh, visit);
+        }
+        visit(to.isFresh, from.isFresh);
+        visit(to.mustRefileMobile, from.mustRefileMobile);
+        visit(to.restingErased, from.restingErased);
+        visit(to.settledAt, from.settledAt);
+        visit(to.idleUpdates, from.idleUpdates);
+        visit(to.cellSize, from.cellSize);
+        visit(to.restingKinds, from.restingKinds);
+        visit(to.filingCount, from.filingCount);
+        visit(to.waitingRead, from.waitingRead);
     }
 
     /// Leaves nothing filed.

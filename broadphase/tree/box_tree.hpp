@@ -57,6 +57,14 @@ public:
     /// - A level's radius covers its boxes.
     [[nodiscard]] std::string validate() const;
 
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(BoxTree& to, const BoxTree& from, const Visit& visit) {
+        visit(to.origin_, from.origin_);
+        visit(to.levels_, from.levels_);
+        visit(to.blocks_, from.blocks_);
+    }
+
 private:
     struct Box {
         std::array<float, 3> low;
