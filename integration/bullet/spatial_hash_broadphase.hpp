@@ -202,6 +202,26 @@ public:
     /// Cost: that of Pairs::refilterAll(), and of the pairs that come and go.
     void refilterAll(btDispatcher* dispatcher);
 
+    /// From now on the two are no pair, whatever groups, masks and the filter say: see Pairs::ignore(). A
+    /// present pair goes at once, with its algorithm and contacts, and ghosts are told. Ends with
+    /// stopIgnoringPair(), or when one of the two is destroyed. The two differ (asserted). Cost: O(1), and that
+    /// of the cache for a pair; for a cache with deferred removal a pass over its pairs.
+    void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
+    /// Where the two overlap, and the filter accepts it, they are a pair at once. Cost: as ignorePair().
+    void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
+    [[nodiscard]] bool isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const;
+
+    /// Makes the ignored pairs of this proxy those that Bullet's dispatcher refuses: with the objects that its
+    /// btCollisionObject lists by setIgnoreCollisionCheck(), and that are in the world. Others that it had are
+    /// ignored no more, unless the other object lists this one. Call it when the list has changed, also by
+    /// addConstraint() with disableCollisionsBetweenLinkedBodies or removeConstraint(), and when the object, or
+    /// one of the list, has been added. The client is a btCollisionObject; a list may name objects that are
+    /// gone. Cost: a pass over all proxies and ignored pairs, and as ignorePair() for each that changes.
+    void collisionChecksChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
+    /// The same for many proxies, in one pass.
+    void collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,
+                                btDispatcher* dispatcher);
+
     /// Frees the algorithms and contacts that the proxy's pairs have made from its shape, here and in the
     /// ghosts that list it; the pairs stay. Call it after a change of shape, scale, margin or other data by
     /// which contacts are made, beside btCollisionWorld::updateSingleAabb(), before the next step. A ghost
@@ -291,6 +311,12 @@ private:
         const ProxyId idOfB = idOf(b);
         return idOfA < idOfB ? ProxyPair{idOfA, idOfB} : ProxyPair{idOfB, idOfA};
     }
+    using ProxyPairs = std::vector<ProxyPair>;
+    void listPairsToIgnore(std::span<btBroadphaseProxy* const> proxies, ProxyPairs& pairs) const;
+    void listPairsToIgnoreNoMore(std::span<btBroadphaseProxy* const> proxies,
+                                 ProxyPairs& pairs) const;
+    void ignore(std::span<const ProxyPair> pairs, btDispatcher* dispatcher);
+    void stopIgnoring(std::span<const ProxyPair> pairs, btDispatcher* dispatcher);
     void renewPairsOfOtherCache(btBroadphaseProxy& proxy, btDispatcher* dispatcher);
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
     void removeFromGrid(Proxy* proxy);
