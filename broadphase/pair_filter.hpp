@@ -26,7 +26,7 @@ namespace hashphase {
 ///
 /// Asked     once when two proxies begin to overlap; again about a refused candidate when one of the two has
 ///           changed; again about any candidate by refilter(). Never about two that may not pair by their
-///           groups.
+///           groups, or that are ignored.
 /// Order     ascending by ids. Thousands of candidates may come in parts, each part in that order.
 /// Threads   the thread that calls Pairs
 /// Misuse    The filter may ask the grid but must not change it (asserted).

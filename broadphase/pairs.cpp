@@ -2,6 +2,7 @@
 #include <broadphase/pairs.hpp>
 
 #include <broadphase/pairs/check.inl>
+#include <broadphase/pairs/ignored.inl>
 #include <broadphase/pairs/immediate.inl>
 #include <broadphase/pairs/step.hpp>
 #include <broadphase/pairs/update.inl>
@@ -92,6 +93,31 @@ PairChanges Pairs<Scalar>::refilterAll(PairFilter filter) & {
     return detail::refilterAll(state_, filter);
 }
 
+template <class Scalar>
+PairChanges Pairs<Scalar>::ignore(const ProxyPair& pair) & {
+    HASHPHASE_ASSERT(
+        grid_.contains(pair.first) && grid_.contains(pair.second) && pair.first != pair.second,
+        "Only two proxies of the grid are ignored as a pair.");
+    return ignore(std::span(&pair, 1));
+}
+
+template <class Scalar>
+PairChanges Pairs<Scalar>::ignore(std::span<const ProxyPair> pairs) & {
+    HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
+    return detail::ignore(state_, pairs);
+}
+
+template <class Scalar>
+PairChanges Pairs<Scalar>::stopIgnoring(const ProxyPair& pair, PairFilter filter) & {
+    return stopIgnoring(std::span(&pair, 1), filter);
+}
+
+template <class Scalar>
+PairChanges Pairs<Scalar>::stopIgnoring(std::span<const ProxyPair> pairs, PairFilter filter) & {
+    HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
+    return detail::stopIgnoring(state_, pairs, filter);
+}
+
 // Made again in place, so that nothing is left of what was, and nothing takes memory.
 template <class Scalar>
 void Pairs<Scalar>::clear() {
@@ -116,6 +142,16 @@ void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
     HASHPHASE_ASSERT(grid_.store().cost.changed == 0,
                      "The set of pairs is asked for directly after an update.");
     detail::collect(state_, pairs);
+}
+
+template <class Scalar>
+bool Pairs<Scalar>::isIgnored(const ProxyPair& pair) const noexcept {
+    return detail::isIgnored(state_, pair);
+}
+
+template <class Scalar>
+void Pairs<Scalar>::collectIgnored(std::vector<ProxyPair>& pairs) const {
+    detail::collectIgnored(state_, pairs);
 }
 
 template <class Scalar>

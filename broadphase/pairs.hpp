@@ -4,8 +4,9 @@
 // The exact set of overlapping pairs of a grid, as the changes from one update to the next.
 //
 // A pair is two proxies whose closed boxes overlap, or that touch on their ways where one of them sweeps;
-// whose groups let them pair (Grid::setGroups()); and which the filter accepts. update() tells which pairs
-// were born and which died since the last update, each once, sorted. Pairs that persist are not touched.
+// whose groups let them pair (Grid::setGroups()); which are not ignored (ignore()); and which the filter
+// accepts. update() tells which pairs were born and which died since the last update, each once, sorted.
+// Pairs that persist are not touched.
 // Mostly a pair takes no memory: it is new when its boxes touch now and did not at the last update.
 //
 //     Pairs<float> pairs(grid);
@@ -14,9 +15,9 @@
 //
 // A frame   move proxies in the grid, then update() here (it updates the grid).
 // Threads   every member needs the grid and this object for itself.
-// Failure   An exception of the filter, or std::bad_alloc, is passed on. If findPairsNow() or refilter()
-//           throws, nothing has happened. If update() throws, the frame has not ended: the next update()
-//           tells all that has changed since the last one that returned.
+// Failure   An exception of the filter, or std::bad_alloc, is passed on. If findPairsNow(), refilter(),
+//           ignore() or stopIgnoring() throws, nothing has happened. If update() throws, the frame has not
+//           ended: the next update() tells all that has changed since the last one that returned.
 // Memory    follows proxies and pairs. Overlapping candidates that the filter refused are remembered, up to
 //           32 for each proxy and four for each pair. Where it refuses more, the pairs are remembered
 //           instead, and the cost of update() follows all that changed proxies overlap.
@@ -105,8 +106,29 @@ public:
     /// scratch, and a box query for each proxy that has changed since the last update.
     PairChanges refilterAll(PairFilter filter) &;
 
-    /// Grid::clear(), which also forgets all pairs and sweeps: everything is as new, over a new grid. Reports
-    /// no deaths. Not within a query or the filter (asserted). Cost: O(Grid::indexLimit()).
+    /// From now on the two are no pair, whatever their groups and the filter say, and the filter is not asked
+    /// about them, until stopIgnoring(). A present pair ends at once: returns its death, with deaths of removed
+    /// proxies as findPairsNow(). When one of the two is removed, they are ignored no more. Two ids, both alive
+    /// (asserted), in any order. Where it throws, nothing has happened. Cost: O(1) amortised.
+    PairChanges ignore(const ProxyPair& pair) &;
+    /// ignore() for many; those of which one is not alive are passed over. Cost: O(pairs) amortised.
+    PairChanges ignore(std::span<const ProxyPair> pairs) &;
+
+    /// Ends ignore(). Where the two overlap, or met on their ways at the last update, and may pair by their
+    /// groups, the filter is asked at once: returns the birth. Two that are not ignored are passed over. Where
+    /// it throws, nothing has happened. Cost: O(1), for many O(pairs).
+    PairChanges stopIgnoring(const ProxyPair& pair, PairFilter filter) &;
+    PairChanges stopIgnoring(std::span<const ProxyPair> pairs, PairFilter filter) &;
+
+    /// Whether the two, in any order, are alive and ignored. Cost: O(1).
+    [[nodiscard]] bool isIgnored(const ProxyPair& pair) const noexcept;
+
+    /// Appends all pairs that are ignored, sorted, to `pairs`. Cost: that of sorting them.
+    void collectIgnored(std::vector<ProxyPair>& pairs) const;
+
+    /// Grid::clear(), which also forgets all pairs, those that are ignored, and sweeps: everything is as new,
+    /// over a new grid. Reports no deaths. Not within a query or the filter (asserted). Cost:
+    /// O(Grid::indexLimit()).
     void clear();
 
     /// Appends the whole set of pairs as of the last update, sorted, to `pairs`. The grid must not have
@@ -120,8 +142,8 @@ public:
     /// Number of pairs in the set.
     [[nodiscard]] std::size_t count() const noexcept { return state_.known.count; }
 
-    /// Number of refused candidates that are remembered; 0 while remembersPairs(). Candidates that may not
-    /// pair by their groups are not counted.
+    /// Number of refused candidates that are remembered, the ignored ones among them; 0 while
+    /// remembersPairs(). Candidates that may not pair by their groups are not counted.
     [[nodiscard]] std::size_t refusedCount() const noexcept { return state_.known.refusedCount(); }
 
     /// True while the pairs are remembered instead of the refused candidates, because the filter refuses most
@@ -144,7 +166,9 @@ public:
     ///   of the pairs that are kept.
     /// - Of each swept candidate one sweeps.
     /// - The pairs that are kept overlap and may not pair.
-    /// While remembersPairs(), it only says whether count() is their number, and each overlaps or is swept.
+    /// - No pair that is ignored is a pair.
+    /// While remembersPairs(), it says only the last, and whether count() is their number, and each overlaps
+    /// or is swept.
     [[nodiscard]] std::string validate() const;
 
     // --- For the library's own parts -------------------------------------------------------------

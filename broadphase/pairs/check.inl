@@ -86,11 +86,23 @@ template <class Scalar>
                  "or is swept: broken.";
 }
 
+template <class Scalar>
+[[nodiscard]] bool areIgnoredNoPairs(const PairState<Scalar>& pairs) {
+    const auto isNoPair = [&](const ProxyPair& pair) {
+        const PairKey key = pairKey(pair.first.index, pair.second.index);
+        return !pairs.areAlive(pair) || pairs.known.isRefused(key) || !pairs.isKnown(key);
+    };
+    return std::ranges::all_of(pairs.known.ignored.pairs(), isNoPair);
+}
+
 /// See Pairs::validate().
 template <class Scalar>
 [[nodiscard]] std::string validate(const PairState<Scalar>& pairs) {
     const KnownPairs& known = pairs.known;
     const std::vector<PairKey>& swept = known.swept.atUpdate;
+    if (!areIgnoredNoPairs(pairs)) {
+        return "No pair that is ignored is a pair: broken.";
+    }
     if (known.arePairs()) {
         return validateRemembered(pairs);
     }

@@ -79,7 +79,7 @@ void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallel
         return pile != nullptr ? pile->sampled.find(key) : FlatSet::kNone;
     };
     listAskedPairs(pairs, parallelFor, [&](PairKey key) {
-        return pairs.mayPairNow(key) && numberIfSampled(key) == FlatSet::kNone;
+        return pairs.mayAsk(key) && numberIfSampled(key) == FlatSet::kNone;
     });
     std::size_t answers = askedPairs.size();
     {
@@ -91,7 +91,7 @@ void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallel
         if (number != FlatSet::kNone) {
             accepted[i] = pile->sampledAccepted[number];
         } else {
-            accepted[i] = pairs.mayPairNow(asked[i]) ? accepted[--answers] : char{0};
+            accepted[i] = pairs.mayAsk(asked[i]) ? accepted[--answers] : char{0};
         }
     }
 }

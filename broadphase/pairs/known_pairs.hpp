@@ -11,6 +11,7 @@
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/pair_key.hpp>
 #include <broadphase/core/pair_key_set.hpp>
+#include <broadphase/pairs/ignored_pairs.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -89,6 +90,7 @@ struct KnownPairs {
     // that were filtered again count as refused until the next update.
     FlatSet kept;
     PairKeySet immediate;  // candidates decided since the last update
+    IgnoredPairs ignored;  // those of them that are candidates count as refused
     SweptPairs swept;
     std::size_t count = 0;  // of pairs
 
@@ -120,7 +122,7 @@ struct KnownPairs {
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return refused.memoryBytes() + refusedAtRest.memoryBytes() + kept.memoryBytes() +
-               immediate.memoryBytes() + swept.memoryBytes() +
+               immediate.memoryBytes() + ignored.memoryBytes() + swept.memoryBytes() +
                (pile != nullptr ? pile->memoryBytes() : 0);
     }
 

@@ -162,6 +162,9 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT PairState {
     [[nodiscard]] bool areAlive(PairKey key) const noexcept {
         return proxies.isAlive(firstIndex(key)) && proxies.isAlive(secondIndex(key));
     }
+    [[nodiscard]] bool areAlive(const ProxyPair& pair) const noexcept {
+        return proxies.contains(pair.first) && proxies.contains(pair.second);
+    }
     [[nodiscard]] bool areAtRest(PairKey key) const noexcept {
         return proxies.rests(firstIndex(key)) && proxies.rests(secondIndex(key));
     }
@@ -172,6 +175,11 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT PairState {
     }
     [[nodiscard]] bool mayPairNow(PairKey key) const noexcept {
         return proxies.mayPairNow(firstIndex(key), secondIndex(key));
+    }
+    /// Whether the filter decides.
+    [[nodiscard]] bool mayAsk(PairKey key) const noexcept {
+        return mayPairNow(key) &&
+               (known.ignored.size() == 0 || !known.ignored.contains(pairOf(key)));
     }
     /// At the last update.
     [[nodiscard]] bool couldPair(PairKey key) const noexcept {

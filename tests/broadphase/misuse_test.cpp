@@ -141,6 +141,8 @@ TEST_F(Misuse, OfAFilterThatChangesTheGridOrAsksForPairsIsAsserted) {
         expectThatTheGridStays();
         expectAsserted([&] { pairs->findPairsNow(id, accept); });
         expectAsserted([&] { pairs->refilter(id, accept); });
+        expectAsserted([&] { pairs->ignore(makePair(id, other)); });
+        expectAsserted([&] { pairs->stopIgnoring(makePair(id, other), accept); });
         EXPECT_EQ(find(grid, BoxRegion<float>{blockAt(0)}).size(), 2U) << "it may ask the grid";
         return true;
     };
@@ -192,7 +194,10 @@ TEST(MisuseDeathTest, EndsTheProgramWithASentence) {
         gone.reset();
     };
     EXPECT_DEATH_IF_SUPPORTED(goesBeforeItsPairs(), "A grid outlives its Pairs");
-    static_cast<void>(grid.add(blockAt(0)));
+    const ProxyId id = grid.add(blockAt(0));
+    Pairs<float> pairs(grid);
+    EXPECT_DEATH_IF_SUPPORTED(pairs.ignore({id, id}),
+                              "Only two proxies of the grid are ignored as a pair");
     CallEach releasing{[&](ProxyId, float) { grid.releaseUnusedMemory(); }};
     EXPECT_DEATH_IF_SUPPORTED(grid.visit(BoxRegion<float>{blockAt(0)}, releasing),
                               "within a query");
@@ -248,7 +253,10 @@ TEST_F(StaleIds, AreAssertedAndChangeNobodyWithoutAssertions) {
             [&] { static_cast<void>(grid.cellsOf(id)); },
             [&] { EXPECT_TRUE(hasNan(sweeps.motion(id).box)); },
             [&] { EXPECT_TRUE(pairs.findPairsNow(id, acceptAllPairs).born.empty()); },
-            [&] { EXPECT_TRUE(pairs.refilter(id, refuse).died.empty()); }};
+            [&] { EXPECT_TRUE(pairs.refilter(id, refuse).died.empty()); },
+            [&] {
+                EXPECT_TRUE(pairs.ignore({ids[0], id}).died.empty());
+            }};
         for (const auto& call : calls) {
             const int before = caught.count();
             call();

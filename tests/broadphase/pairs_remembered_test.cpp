@@ -83,6 +83,17 @@ struct RefusedCrowd : Population<Scalar, PairWorld> {
             this->refilter(ids[i]);
         }
     }
+    void ignoreSome() {
+        for (int i = 0; i < 20; ++i) {
+            const ProxyId a = anyId();
+            const ProxyId b = anyId();
+            if (a != b && this->random.chance(0.6)) {
+                this->ignore(makePair(a, b));
+            } else if (a != b) {
+                this->stopIgnoring(makePair(a, b));
+            }
+        }
+    }
     [[nodiscard]] ProxyId anyId() { return this->proxies[this->any()].id; }
 
     double reach = 0.7;  // [m]: everything overlaps everything
@@ -118,6 +129,9 @@ TYPED_TEST(PairsOfRefusedCrowds, EqualBruteForceAsTheyGatherAndDisperse) {
             }
             if (frame % 4 == 2) {
                 crowd.askAgain();
+            }
+            if (frame % 3 == 1) {
+                crowd.ignoreSome();
             }
             if (frame % 11 == 7) {
                 crowd.shift({TypeParam(0.5), -2, 1});

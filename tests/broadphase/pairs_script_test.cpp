@@ -101,6 +101,31 @@ TYPED_TEST(PairsInScripts, AreNotDisturbedByQueriesAndAnnouncementsInBetween) {
     EXPECT_GT(found, 1000U);
 }
 
+TYPED_TEST(PairsInScripts, EqualBruteForceWhereSomeAreIgnored) {
+    const auto ignoreAndUpdate = [&](auto& script, auto& world) {
+        const std::vector<ProxyPair> present(world.set().begin(), world.set().end());
+        for (const ProxyPair& pair : present) {
+            const bool areAlive =
+                world.grid.contains(pair.first) && world.grid.contains(pair.second);
+            if (areAlive && script.random().chance(0.1)) {
+                world.ignore(pair);
+            }
+        }
+        std::vector<ProxyPair> ignored;
+        world.pairs.collectIgnored(ignored);
+        for (const ProxyPair& pair : ignored) {
+            if (script.random().chance(0.1)) {
+                world.stopIgnoring(pair);
+            }
+        }
+        this->updateAndCheck(script, world);
+    };
+    for (const double slack : {0.0, 0.01}) {
+        this->playAll({.updatesBeforeRest = 2, .slack = slack}, 0x5eed0009, {.recolour = 0.01}, 60,
+                      ignoreAndUpdate);
+    }
+}
+
 TYPED_TEST(PairsInScripts, EqualBruteForceWhenTheyComeLateAndGo) {
     const auto renewAndUpdate = [&](auto& script, auto& world) {
         if (script.random().chance(0.2)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 // What pairs tell of a few cubes: from one update to the next, at once, when the filter is asked again, when
-// groups are set, and of what sweeps.
+// groups are set or pairs ignored, and of what sweeps.
 
 #include <broadphase/pairs.hpp>
 #include <tests/support/cube_stories.hpp>
@@ -95,6 +95,27 @@ constexpr Story kGroups[] = {
      "a=0 b=0.5 | +ab b#parked z a? -ab | b#moving | +ab b#parked z ?? -ab | b#moving | +ab"},
 };
 INSTANTIATE_TEST_SUITE_P(PairGroups, Stories, testing::ValuesIn(kGroups), nameOf);
+
+constexpr Story kIgnored[] = {
+    {"EndAtOnceAndBeginAtOnce", "a=0 b=0.5 | +ab z a^b -ab z a&b +ab z |"},
+    {"DoNotBegin", "a=0 b=9 | a^b b=0.5 | z b! a? ?? | b=9 | b=0.5 a&b +ab |"},
+    {"AreToldOfByNobodyWithinAFrame", "a=0 b=0.5 | +ab z a^b -ab a&b +ab a^b -ab |"},
+    {"AreNoCandidatesBeforeTheFirstUpdate", "a=0 b=0.5 a^b a! | z a&b +ab |"},
+    {"BeginWithTheUpdateWhereTheyAreApart", "a=0 b=0.5 | +ab a^b -ab b=9 a&b | b=0.5 | +ab"},
+    {"ThatPartAndAreIgnoredDieAtOnce", "a=0 b=0.5 | +ab z b=9 a^b -ab | b=0.5 | a&b +ab |"},
+    {"ThatWereFoundAtOnceEndAtOnce", "a=0 | b=0.5 b! +ab a^b -ab b! a&b +ab b=9 | -ab"},
+    {"AreGoneWithAProxy", "a=0 b=0.5 | +ab a^b -ab b- c=0.5 | +ac z a^c -ac c- | d=0.5 | +ad"},
+    {"AreGoneWithAProxyThatNoUpdateHasSeen", "a=0 | b=0.5 a^b b- c=0.5 | +ac"},
+    {"AreNotAskedAbout", "a=0 b=0.5 a~1 b~1 | a^b a~0 ?? | z b=0.6 | a&b +ab a~1 a? -ab a^b a&b |"},
+    {"AreSetApartFromGroups",
+     "a=0 b=0.5 | +ab b#parked z a^b -ab | z b#moving | z b=0.7 | a&b +ab b#parked | a^b -ab a&b |"
+     " b#moving | +ab"},
+    {"MayBeOfSweeps",
+     "w:50 a=0 a>100 | +aw z a^w -aw | a>100 | z a&w +aw | a>0 | -aw a^w a>100 | a>0 a=50 | a&w "
+     "+aw"},
+    {"OfAStillPairAreFiledApart", "a:0 b:0.5 | +ab z a^b -ab z c=0.75 | +ac +bc z a&b +ab |"},
+};
+INSTANTIATE_TEST_SUITE_P(IgnoredPairs, Stories, testing::ValuesIn(kIgnored), nameOf);
 
 constexpr Story kSweeps[] = {
     {"FollowWhoStopsIsRemovedAndComesAgain",

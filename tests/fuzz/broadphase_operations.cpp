@@ -162,6 +162,34 @@ private:
         }
     }
 
+    void ignore(Arguments& arguments) {
+        const ProxyId first = life_.proxies()[life_.any(arguments)].id;
+        const std::uint32_t count = 1 + arguments.below(8);
+        const bool isIgnored = arguments.below(3) > 0;
+        if (world_.hash() == nullptr) {
+            return;
+        }
+        btBroadphaseProxy* const a = world_.proxyOf(first);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            btBroadphaseProxy* const b = world_.proxyOf(life_.proxies()[life_.any(arguments)].id);
+            if (a == b) {
+                continue;
+            }
+            story_.tell(isIgnored ? "ignore " : "ignore no more ", objectOf(a), " and ",
+                        objectOf(b), "; ");
+            const std::pair<int, int> pair = std::minmax({objectOf(a), objectOf(b)});
+            if (isIgnored) {
+                world_.ignored.insert(pair);
+                world_.hash()->ignorePair(a, b, nullptr);
+                EXPECT_EQ(world_.cache().findPair(a, b), nullptr);
+            } else {
+                world_.ignored.erase(pair);
+                world_.hash()->stopIgnoringPair(a, b, nullptr);
+            }
+            EXPECT_EQ(world_.hash()->isIgnoredPair(b, a), isIgnored);
+        }
+    }
+
     void createMany(Arguments& arguments) {
         const std::uint32_t count = arguments.below(20);
         if (world_.hash() == nullptr || life_.proxies().size() + count > kMostProxies) {
@@ -325,11 +353,12 @@ private:
     }
 
     using Self = BroadphasePlay;
-    static constexpr std::array<void (Self::*)(Arguments&), 16> kOwn{
+    static constexpr std::array<void (Self::*)(Arguments&), 17> kOwn{
         &Self::calculateOnce, &Self::calculateOnce, &Self::calculateOnce, &Self::calculateOften,
         &Self::regroup,       &Self::changeFilter,  &Self::createMany,    &Self::setMany,
         &Self::destroyMany,   &Self::askBox,        &Self::askRay,        &Self::askRay,
-        &Self::askClosest,    &Self::regroupMany,   &Self::writeGroups,   &Self::cleanAndSort};
+        &Self::askClosest,    &Self::regroupMany,   &Self::writeGroups,   &Self::cleanAndSort,
+        &Self::ignore};
 
     OperationLog& story_;
     BulletLifeWorld world_;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -128,6 +129,9 @@ public:
     void noteDestroyed(int object) {
         proxies[static_cast<std::size_t>(object)] = nullptr;
         isTaken_[static_cast<std::size_t>(object)] = 0;
+        std::erase_if(ignored, [object](const auto& pair) {
+            return pair.first == object || pair.second == object;
+        });
         for (const auto& client : clients_) {
             client->isAlive = client->isAlive && client->object != object;
         }
@@ -152,6 +156,7 @@ public:
                 btBroadphaseProxy* const a = proxyOf(boxes[i].id);
                 btBroadphaseProxy* const b = proxyOf(boxes[k].id);
                 if (overlap(boxOf(boxes[i].box), boxOf(boxes[k].box)) &&
+                    !ignored.contains(std::minmax({objectOf(a), objectOf(b)})) &&
                     (filter.divisor != 0 ? filter.needBroadphaseCollision(a, b)
                                          : groupsCollide(*a, *b))) {
                     pairs.push_back(std::minmax({objectOf(a), objectOf(b)}));
@@ -165,6 +170,7 @@ public:
     PairJournal journal;
     DivisorFilter filter;
     std::vector<btBroadphaseProxy*> proxies;  // by object
+    std::set<std::pair<int, int>> ignored;    // of objects, the lower one first
 
 private:
     std::vector<char> isTaken_;  // by object: has a client

@@ -121,6 +121,33 @@ private:
         }
     }
 
+    void ignore(Arguments& arguments) {
+        const ProxyId a = life_.proxies()[life_.any(arguments)].id;
+        const ProxyId b = life_.proxies()[life_.any(arguments)].id;
+        if (a != b) {
+            ignoreOrNot(makePair(a, b), arguments.below(3) > 0);
+        }
+    }
+    void ignoreMany(Arguments& arguments) {
+        const std::vector<ProxyPair> present(world_.set().begin(), world_.set().end());
+        const std::uint32_t each = 1 + arguments.below(6);
+        for (std::size_t i = 0; i < present.size(); i += each) {
+            ignoreOrNot(present[i], true);
+        }
+        const bool doesEnd = arguments.flag();
+        for (std::size_t i = 0; i < present.size() && doesEnd; i += 2 * each) {
+            ignoreOrNot(present[i], false);
+        }
+    }
+    void ignoreOrNot(const ProxyPair& pair, bool isIgnored) {
+        story_.tell(isIgnored ? "ignore " : "ignore no more ", pair.first.index, " and ",
+                    pair.second.index, "; ");
+        if (!world_.grid.contains(pair.first) || !world_.grid.contains(pair.second)) {
+            return;
+        }
+        isIgnored ? world_.ignore(pair) : world_.stopIgnoring(pair);
+    }
+
     void release(bool isAll) {
         story_.tell("release unused memory; ");
         world_.grid.releaseUnusedMemory();
@@ -179,14 +206,24 @@ private:
         }
     }
 
-    static constexpr std::array<void (PairPlay::*)(Arguments&), 14> kOwn{
-        &PairPlay::updateOnce,     &PairPlay::updateOnce,
-        &PairPlay::updateOnce,     &PairPlay::clearOrUpdate,
-        &PairPlay::releaseAndRest, &PairPlay::paintAndRefilter,
-        &PairPlay::findPairsNow,   &PairPlay::sweep,
-        &PairPlay::sweep,          &PairPlay::regroup,
-        &PairPlay::regroup,        &PairPlay::regroupMany,
-        &PairPlay::refilterMany,   &PairPlay::ask};
+    static constexpr std::array<void (PairPlay::*)(Arguments&), 17> kOwn{
+        &PairPlay::updateOnce,
+        &PairPlay::updateOnce,
+        &PairPlay::updateOnce,
+        &PairPlay::clearOrUpdate,
+        &PairPlay::releaseAndRest,
+        &PairPlay::paintAndRefilter,
+        &PairPlay::findPairsNow,
+        &PairPlay::sweep,
+        &PairPlay::sweep,
+        &PairPlay::regroup,
+        &PairPlay::regroup,
+        &PairPlay::regroupMany,
+        &PairPlay::refilterMany,
+        &PairPlay::ignore,
+        &PairPlay::ignore,
+        &PairPlay::ignoreMany,
+        &PairPlay::ask};
 
     OperationLog& story_;
     bool maySweep_ = false;

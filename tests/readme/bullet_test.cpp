@@ -55,22 +55,39 @@ TEST_F(BulletPage, GroupsGoAlong) {
     EXPECT_EQ(found, std::vector{SpatialHashBroadphase::idOf(body.getBroadphaseProxy())});
 }
 
+TEST_F(BulletPage, PairsAreIgnored) {
+    FallingSphere another;
+    btRigidBody& other = another.body;
+    world.addRigidBody(&other);
+    world.performDiscreteCollisionDetection();
+    btBroadphaseProxy* const rider = body.getBroadphaseProxy();
+    btBroadphaseProxy* const horse = other.getBroadphaseProxy();
+    const auto isPair = [&] {
+        return broadphase.getOverlappingPairCache()->findPair(rider, horse) != nullptr;
+    };
+    EXPECT_TRUE(isPair());
+    {
+#include <bullet_6.inl>
+    } EXPECT_FALSE(isPair());
+    world.removeRigidBody(&other);
+}
+
 TEST_F(BulletPage, EmptyWorldIsReset) {
     world.removeRigidBody(&body);
-#include <bullet_6.inl>
+#include <bullet_7.inl>
     world.addRigidBody(&body);
     EXPECT_EQ(body.getBroadphaseProxy()->getUid(), 1);
 }
 
 TEST_F(BulletPage, OriginIsShifted) {
     btVector3 myCamera(0, 2, 0);
-#include <bullet_7.inl>
+#include <bullet_8.inl>
     EXPECT_EQ(body.getWorldTransform().getOrigin().x(), -1024);
     EXPECT_EQ(myCamera, btVector3(-1024, 2, 0));
 }
 
 TEST(BulletPageAlone, CacheOfYoursIsUsed) {
-#include <bullet_8.inl>
+#include <bullet_9.inl>
     EXPECT_EQ(broadphase.getOverlappingPairCache(), &pairCache);
 }
 

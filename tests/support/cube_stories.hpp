@@ -26,8 +26,9 @@ namespace hashphase::test {
 ///     a!    findPairsNow()                           a#G   gets the groups: parked, moving
 ///     a?    refilter()                               ??    refilterAll()
 ///     a~N   gets the colour N; those of one colour above 0 refuse each other
+///     a^b   the two are ignored as a pair            a&b   they are not any more
 ///     |     ends the frame                           z     lets some frames pass without a change
-///     +ab -ab    what the last |, ! or ? has told; what is told and not written is a fault
+///     +ab -ab    what the last |, !, ?, ^ or & has told; what is told and not written is a fault
 /// After each frame all promises of tests/support/pair_world.hpp are checked.
 class CubeStory {
 public:
@@ -70,6 +71,10 @@ private:
             EXPECT_EQ(told_.erase(change), 1U) << "is not told";
         } else if (word[1] == '!') {
             tell([&] { world_.findPairsNow(cubes_.at(word[0]).id); });
+        } else if (word[1] == '^') {
+            tell([&] { world_.ignore(pairOf(word[0], word[2])); });
+        } else if (word[1] == '&') {
+            tell([&] { world_.stopIgnoring(pairOf(word[0], word[2])); });
         } else if (word[1] == '?') {
             tell([&] { world_.refilter(cubes_.at(word[0]).id); });
         } else {

@@ -47,6 +47,8 @@ void PairWorld<Scalar>::remove(ProxyId id) {
     grid.remove(id);
     ways_.erase(id);
     groups_.erase(id);
+    std::erase_if(ignored_,
+                  [id](const ProxyPair& pair) { return pair.first == id || pair.second == id; });
 }
 
 template <class Scalar>
@@ -111,7 +113,7 @@ template <class Scalar>
 typename PairWorld<Scalar>::Filter PairWorld<Scalar>::recordingFilter() {
     return [this](ProxyId a, ProxyId b) {
         EXPECT_TRUE(grid.contains(a) && grid.contains(b)) << "the filter is asked about the dead";
-        EXPECT_TRUE(mayPair(makePair(a, b))) << "the filter is asked where groups decide";
+        EXPECT_TRUE(mayBeAsked(makePair(a, b))) << "the filter is asked where it does not decide";
         asked_.push_back({a, b});
         return filter_(a, b);
     };
@@ -153,6 +155,35 @@ void PairWorld<Scalar>::findPairsNow(ProxyId id) {
 }
 
 template <class Scalar>
+void PairWorld<Scalar>::ignore(const ProxyPair& pair) {
+    if (set_.contains(pair)) {
+        refused_.insert(pair);
+    }
+    asked_.clear();
+    ignored_.insert(pair);
+    apply(pairs.ignore(pair));
+    EXPECT_FALSE(set_.contains(pair)) << testing::PrintToString(pair) << " is ignored and a pair";
+    expectIgnored();
+}
+
+// The two are a pair at once, unless one of them sweeps.
+template <class Scalar>
+void PairWorld<Scalar>::stopIgnoring(const ProxyPair& pair) {
+    const bool wasIgnored = ignored_.erase(pair) > 0;
+    asked_.clear();
+    apply(pairs.stopIgnoring(pair, recordingFilter()));
+    if (!wasIgnored) {
+        EXPECT_TRUE(asked_.empty());
+    } else if (!doesSweep(pair.first) && !doesSweep(pair.second)) {
+        const bool isPair = overlaps(grid.box(pair.first), grid.box(pair.second)) &&
+                            mayPair(pair) && filter_(pair.first, pair.second);
+        EXPECT_EQ(set_.contains(pair), isPair) << testing::PrintToString(pair);
+    }
+    noteDecided();
+    expectIgnored();
+}
+
+template <class Scalar>
 PairChanges PairWorld<Scalar>::update() {
     asked_.clear();
     askedNow_.clear();
@@ -168,7 +199,8 @@ void PairWorld<Scalar>::check(std::span<const Placed<Scalar>> proxies) {
     const std::vector<ProxyPair> expected =
         pairsByBruteForce(proxies, [this](const Placed<Scalar>& a, const Placed<Scalar>& b) {
             const ProxyPair pair = makePair(a.id, b.id);
-            return doMeet(a, b) && (mayPair(pair) || before_.contains(pair));
+            return doMeet(a, b) && !ignored_.contains(pair) &&
+                   (mayPair(pair) || before_.contains(pair));
         });
     const std::vector<ProxyPair> actual(set_.begin(), set_.end());
     ASSERT_EQ(differences(actual, expected), "");
@@ -205,7 +237,7 @@ void PairWorld<Scalar>::apply(const PairChanges& changes) {
 
 template <class Scalar>
 void PairWorld<Scalar>::forgetPairs() {
-    for (auto* of : {&set_, &met_, &refused_, &decided_, &before_, &askedNow_}) {
+    for (auto* of : {&set_, &met_, &refused_, &decided_, &before_, &askedNow_, &ignored_}) {
         of->clear();
     }
 }
@@ -277,8 +309,8 @@ void PairWorld<Scalar>::checkAsked(std::span<const Placed<Scalar>> proxies) {
                 continue;
             }
             meeting.insert(pair);
-            if (!mayPair(pair)) {
-                continue;  // a pair, as long as they meet
+            if (!mayBeAsked(pair)) {
+                continue;  // ignored, or a pair as long as they meet
             }
             const bool isNew = !met_.contains(pair) && !decided_.contains(pair);
             const bool isRefused = refused_.contains(pair) && hasChanged(pair);
@@ -313,6 +345,21 @@ ProxyGroups PairWorld<Scalar>::groupsOf(ProxyId id) const {
 template <class Scalar>
 bool PairWorld<Scalar>::mayPair(const ProxyPair& pair) const {
     return hashphase::mayPair(groupsOf(pair.first), groupsOf(pair.second));
+}
+
+template <class Scalar>
+bool PairWorld<Scalar>::mayBeAsked(const ProxyPair& pair) const {
+    return mayPair(pair) && !ignored_.contains(pair);
+}
+
+template <class Scalar>
+void PairWorld<Scalar>::expectIgnored() const {
+    std::vector<ProxyPair> all;
+    pairs.collectIgnored(all);
+    EXPECT_TRUE(std::ranges::equal(all, ignored_));
+    for (const ProxyPair& pair : all) {
+        EXPECT_TRUE(pairs.isIgnored({pair.second, pair.first}));
+    }
 }
 
 template class PairWorld<float>;

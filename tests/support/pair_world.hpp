@@ -73,6 +73,10 @@ public:
     void refilter(std::span<const ProxyId> ids);
     void refilterAll();
     void findPairsNow(ProxyId id);
+    void ignore(const ProxyPair& pair);
+    void stopIgnoring(const ProxyPair& pair);
+    /// None is ignored any more, after calls on `pairs` itself.
+    void forgetIgnored() { ignored_.clear(); }
 
     /// Ends the frame. What the filter was asked is in asked() afterwards.
     PairChanges update();
@@ -106,9 +110,11 @@ private:
     void noteAsked(const char* what);
     void noteRefiltered(const PairChanges& changes);
     void noteDecided();
+    void expectIgnored() const;
     void checkAsked(std::span<const Placed<Scalar>> proxies);
     [[nodiscard]] ProxyGroups groupsOf(ProxyId id) const;
     [[nodiscard]] bool mayPair(const ProxyPair& pair) const;
+    [[nodiscard]] bool mayBeAsked(const ProxyPair& pair) const;
     [[nodiscard]] bool doMeet(const Placed<Scalar>& a, const Placed<Scalar>& b) const;
     [[nodiscard]] bool hasChanged(const ProxyPair& pair) const;
 
@@ -118,6 +124,7 @@ private:
 
     std::map<ProxyId, Way> ways_;  // of what sweeps
     std::map<ProxyId, ProxyGroups> groups_;
+    std::set<ProxyPair> ignored_;
     std::set<ProxyPair> before_;    // the set before the last update
     std::set<ProxyPair> askedNow_;  // by findPairsNow() since the last update
 

@@ -112,12 +112,17 @@ TEST(BroadphaseMisuse, IsAsserted) {
          {gone, [&] { broadphase.destroyProxy(nullptr, nullptr); }},
          {gone, [&] { boxes.set(dead, kThisPlace); }},
          {gone, [&] { broadphase.refilter(dead, nullptr); }},
+         {gone, [&] { broadphase.ignorePair(alive, dead, nullptr); }},
+         {gone, [&] { broadphase.stopIgnoringPair(dead, alive, nullptr); }},
+         {gone, [&] { broadphase.collisionChecksChanged(dead, nullptr); }},
+         {"by another one", [&] { broadphase.ignorePair(alive, alive, nullptr); }},
          {"", [&] { broadphase.getAabb(dead, box.min, box.max); }},
          {"", [&] { broadphase.getAabb(nullptr, box.min, box.max); }},
          {"", [&] { static_cast<void>(SpatialHashBroadphase::idOf(nullptr)); }},
          {"alive", [&] { static_cast<void>(broadphase.proxyOf(deadId)); }},
          {alien, [&] { broadphase.destroyProxy(foreign, nullptr); }},
          {alien, [&] { boxes.set(foreign, kThisPlace); }},
+         {alien, [&] { broadphase.ignorePair(foreign, alive, nullptr); }},
          {alien, [&] { broadphase.destroyProxies(std::span(&foreign, 1), nullptr); }},
          {alien, [&] { broadphase.setAabbs(std::span(&foreign, 1), one, one, nullptr); }},
          {gone, [&] { broadphase.destroyProxies(two, nullptr); }},
@@ -163,6 +168,9 @@ TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveChangesNobodyWithoutAssertions) {
     boxes.broadphase.destroyProxy(dead, nullptr);
     boxes.set(dead, {{5, 5, 5}, {6, 6, 6}});
     boxes.broadphase.refilter(dead, nullptr);
+    boxes.broadphase.ignorePair(boxes.proxies[0], dead, nullptr);
+    boxes.broadphase.ignorePair(boxes.proxies[0], boxes.proxies[0], nullptr);
+    boxes.broadphase.collisionChecksChanged(dead, nullptr);
     EXPECT_EQ(boxes.broadphase.proxyOf(deadId), nullptr);
     EXPECT_EQ(boxes.broadphase.proxyOf(ProxyId{}), nullptr);
     boxes.check();
@@ -170,7 +178,7 @@ TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveChangesNobodyWithoutAssertions) {
     for (const btBroadphaseProxy* alive : boxes.proxies) {
         EXPECT_TRUE(isSame(boxOf(*alive), place));
     }
-    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 5 : 0);
+    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 8 : 0);
 }
 
 TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveInABatchChangesNobodyWithoutAssertions) {
