@@ -75,10 +75,10 @@ void forEachPart(const auto& to, const auto& from, const Visit& visit) {
     }
 }
 
-// All of them or, where memory runs out, none.
-void copyAll(const auto& to, const auto& from) {
-    forEachPart(to, from, MakeRoomForParts{});
-    forEachPart(to, from, CopyParts{});
+template <class Store, class PairsOfStore>
+auto sideOf(Store& store, PairsOfStore* pairs) {
+    auto* const motions = motionsOf(pairs);
+    return Side{&store, pairs != nullptr ? &pairs->state() : nullptr, motions};
 }
 
 }  // namespace
@@ -114,12 +114,11 @@ void GridSnapshot<Scalar>::save(const Grid<Scalar>& grid, const Pairs<Scalar>* p
     if (twin_ == nullptr || twin_->store.config != grid.store().config) {
         twin_ = std::make_unique<detail::GridTwin<Scalar>>(grid.store().config);
     }
-    detail::Motions<Scalar>* const motions = detail::motionsOf(pairs);
     twin_->hasPairs = pairs != nullptr;
-    twin_->hasSweeps = motions != nullptr;
-    detail::copyAll(twin_->side(),
-                    detail::Side{&grid.store(), pairs != nullptr ? &pairs->state() : nullptr,
-                                 static_cast<const detail::Motions<Scalar>*>(motions)});
+    twin_->hasSweeps = detail::motionsOf(pairs) != nullptr;
+    const auto from = detail::sideOf(grid.store(), pairs);
+    detail::forEachPart(twin_->side(), from, detail::MakeRoomForParts{});
+    detail::forEachPart(twin_->side(), from, detail::CopyParts{});
     isSaved_ = true;
 }
 
@@ -134,8 +133,7 @@ void GridSnapshot<Scalar>::restore(Pairs<Scalar>& pairs) const {
 }
 
 template <class Scalar>
-void GridSnapshot<Scalar>::restore(Grid<Scalar>& grid, Pairs<Scalar>* pairs) const {
-    detail::Motions<Scalar>* const motions = detail::motionsOf(pairs);
+bool GridSnapshot<Scalar>::isMisused(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs) const {
     const char* fault = detail::faultOf(grid, pairs);
     if (isEmpty()) {
         fault = "Nothing was saved that could be restored.";
@@ -143,17 +141,29 @@ void GridSnapshot<Scalar>::restore(Grid<Scalar>& grid, Pairs<Scalar>* pairs) con
         fault = "A grid is restored with the settings that it was saved with.";
     } else if (fault == nullptr && twin_->hasPairs != (pairs != nullptr)) {
         fault = detail::kPairsGoWithTheirGrid;
-    } else if (fault == nullptr && twin_->hasSweeps != (motions != nullptr)) {
+    } else if (fault == nullptr && twin_->hasSweeps != (detail::motionsOf(pairs) != nullptr)) {
         fault = "Where Pairs follow Sweeps, they do so when they are restored.";
     }
     HASHPHASE_ASSERT(fault == nullptr, fault);
-    if (fault != nullptr) {
-        return;
+    return fault != nullptr;
+}
+
+template <class Scalar>
+void GridSnapshot<Scalar>::restore(Grid<Scalar>& grid, Pairs<Scalar>* pairs) const {
+    if (!isMisused(grid, pairs)) {
+        const auto to = detail::sideOf(grid.store(), pairs);
+        detail::forEachPart(to, std::as_const(*twin_).side(), detail::MakeRoomForParts{});
+        detail::forEachPart(to, std::as_const(*twin_).side(), detail::CopyParts{});
+        ++grid.store().proxies.number;
     }
-    detail::copyAll(
-        detail::Side{&grid.store(), pairs != nullptr ? &pairs->state() : nullptr, motions},
-        std::as_const(*twin_).side());
-    ++grid.store().proxies.number;
+}
+
+template <class Scalar>
+void GridSnapshot<Scalar>::makeRoom(Pairs<Scalar>& pairs) const {
+    if (!isMisused(pairs.grid(), &pairs)) {
+        detail::forEachPart(detail::sideOf(pairs.grid().store(), &pairs),
+                            std::as_const(*twin_).side(), detail::MakeRoomForParts{});
+    }
 }
 
 template <class Scalar>

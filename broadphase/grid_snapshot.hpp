@@ -56,6 +56,10 @@ public:
     /// The same of pairs, their grid and the sweeps that they follow.
     void restore(Pairs<Scalar>& pairs) const;
 
+    /// Makes room for restore(), which then takes no memory until the pairs, or their grid, have given some back. Where
+    /// memory runs out, nothing has changed. Misuse as of restore().
+    void makeRoom(Pairs<Scalar>& pairs) const;
+
     /// Whether there is nothing to restore.
     [[nodiscard]] bool isEmpty() const noexcept { return twin_ == nullptr || !isSaved_; }
 
@@ -65,6 +69,7 @@ public:
 private:
     void save(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs);
     void restore(Grid<Scalar>& grid, Pairs<Scalar>* pairs) const;
+    [[nodiscard]] bool isMisused(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs) const;
 
     std::unique_ptr<detail::GridTwin<Scalar>> twin_;
     bool isSaved_ = false;

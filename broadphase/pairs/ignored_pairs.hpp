@@ -67,6 +67,14 @@ public:
         pairs_.shrink_to_fit();
         mostUnchecked_ = kFew + 2 * pairs_.size();
     }
+    /// What is copied: core/copy_parts.hpp.
+    template <class Visit>
+    static void forEachPart(IgnoredPairs& to, const IgnoredPairs& from, const Visit& visit) {
+        visit(to.keys_, from.keys_);
+        visit(to.pairs_, from.pairs_);
+        visit(to.mostUnchecked_, from.mostUnchecked_);
+    }
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return keys_.memoryBytes() + pairs_.capacity() * sizeof(ProxyPair);
     }

@@ -133,6 +133,7 @@ struct KnownPairs {
         visit(to.refusedAtRest, from.refusedAtRest);
         visit(to.pile, from.pile);
         visit(to.kept, from.kept);
+        visit(to.ignored, from.ignored);
         visit(to.immediate, from.immediate);
         visit(to.swept, from.swept);
         visit(to.count, from.count);

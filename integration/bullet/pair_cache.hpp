@@ -49,6 +49,7 @@
 #include <vector>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+class BroadphaseImage;
 struct CacheWatch;
 }
 
@@ -393,6 +394,7 @@ private:
     void freeRetiredAsListed();
     [[nodiscard]] bool areChainsSound() const;
 
+    friend class detail::BroadphaseImage;
     PairOrder order_;
     ProxyKey key_;
     btOverlapFilterCallback* filter_ = nullptr;

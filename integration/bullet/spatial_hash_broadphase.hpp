@@ -371,6 +371,7 @@ private:
     }
 
     friend class detail::LivingBroadphase;
+    friend class detail::BroadphaseImage;
     SpatialHashConfig config_;
     Grid<btScalar> grid_;
     std::unique_ptr<Sweeps<btScalar>> sweeps_;  // if the configuration asks for it

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// Of which of Bullet's classes an object is that Bullet knows by a base alone. Asked by dynamic_cast, which a
+// Bullet that was compiled without RTTI does not link with: there nothing is known.
+
+#include <integration/bullet/precision.hpp>
+
+class btActionInterface;
+class btCollisionObject;
+class btConstraintSolver;
+class btDiscreteDynamicsWorld;
+class btKinematicCharacterController;
+class btPairCachingGhostObject;
+class btSequentialImpulseConstraintSolver;
+class btTypedConstraint;
+
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+
+/// Null where it is another one, or nothing is known of it.
+[[nodiscard]] btKinematicCharacterController* asCharacter(btActionInterface* action);
+[[nodiscard]] btPairCachingGhostObject* asPairCachingGhost(btCollisionObject* ghost);
+
+/// Where nothing is known, what it says of itself is believed.
+[[nodiscard]] btSequentialImpulseConstraintSolver* asSequentialImpulseSolver(
+    btConstraintSolver* solver);
+
+/// Whether it has multibodies.
+[[nodiscard]] bool hasMultiBodies(btDiscreteDynamicsWorld& world);
+
+/// Whether it is a btHingeAccumulatedAngleConstraint.
+[[nodiscard]] bool countsAngles(btTypedConstraint& joint);
+
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The contacts of a world as they were at some time: which manifolds the algorithms of its pairs own, how the
+// dispatcher lists them, and what they hold. For WorldSnapshot.
+//
+// Algorithms cannot be copied. Where one is gone, Bullet's dispatcher makes another one, which is given the
+// manifolds that the former had. Those of Bullet keep nothing else, but for those of compound shapes, which keep
+// one for each child, or each pair of children, that is near.
+
+#include <integration/bullet/precision.hpp>
+
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+struct btCollisionObjectWrapper;
+
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+
+/// Frees the algorithm, if there is one. Nobody is told that its contacts have ended.
+void freeQuietly(btCollisionAlgorithm* algorithm, btDispatcher* dispatcher);
+
+class ContactImage {
+public:
+    /// Begins to save.
+    void begin();
+    /// Adds an algorithm between two clients, or none.
+    void save(const btBroadphasePair& pair);
+    /// Adds one that only waits to be freed.
+    void saveRetired(btCollisionAlgorithm& algorithm);
+    /// Adds manifolds that no algorithm owns.
+    void save(const btAlignedObjectArray<btPersistentManifold*>& manifolds);
+    /// All algorithms have been added. Says what is left over; empty when nothing is.
+    [[nodiscard]] std::string end(btCollisionDispatcher& dispatcher);
+
+    /// So that beginRestore() takes no memory.
+    void makeRoom() const;
+    /// Begins to restore: where the dispatcher has one for each that was added, in their order.
+    void beginRestore() const;
+    /// The algorithm that was added, in its order, from the one that is there now, or null.
+    [[nodiscard]] btCollisionAlgorithm* restore(btCollisionAlgorithm* present,
+                                                const btBroadphasePair& pair,
+                                                btCollisionDispatcher& dispatcher) const;
+    [[nodiscard]] btCollisionAlgorithm* restoreRetired(btCollisionDispatcher& dispatcher) const;
+    void restore(btAlignedObjectArray<btPersistentManifold*>& manifolds,
+                 btCollisionDispatcher& dispatcher) const;
+    void endRestore(btCollisionDispatcher& dispatcher) const;
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+private:
+    /// A manifold but for its points.
+    struct Head {
+        const btCollisionObject* bodies[2];
+        btScalar breakingThreshold;
+        btScalar processingThreshold;
+        int companions[2];
+        int pointCount;
+    };
+    class Writer;
+    class Builder;
+
+    // What algorithms own, by places in the dispatcher's list; of a compound's, first how many children it has,
+    // then for each whether it has one, and that.
+    std::vector<int> owned_;
+    std::vector<Head> heads_;  // in the dispatcher's order
+    std::vector<btManifoldPoint> points_;
+    int ownedCount_ = 0;
+
+    // Scratch.
+    btManifoldArray found_;
+    mutable std::size_t at_ = 0;  // in owned_
+    mutable std::vector<btPersistentManifold*> manifolds_;
+};
+
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

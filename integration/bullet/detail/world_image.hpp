@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What a WorldSnapshot keeps of a world besides the broadphase and the contacts: its objects, joints and actions,
+// and the world's own settings.
+
+#include <broadphase/core/byte_stream.hpp>
+#include <broadphase/core/flat_set.hpp>
+#include <integration/bullet/detail/broadphase_image.hpp>
+#include <integration/bullet/detail/contact_image.hpp>
+#include <integration/bullet/detail/ghost_image.hpp>
+#include <integration/bullet/world_snapshot.hpp>
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+
+struct SavedObject {
+    btCollisionObject* object;
+    btCollisionShape* shape;
+    btCollisionShape* rootShape;
+    int uniqueId;  // of its proxy
+    std::uint32_t proxyIndex;
+    int type;           // btCollisionObject::CollisionObjectTypes
+    int shapeRevision;  // of a compound shape
+    int ignoredCount;   // in WorldImage::pointers, one behind the other
+    int jointCount;
+    int overlappingCount;
+    int ghostPairCount;
+};
+
+struct SavedJoint {
+    btTypedConstraint* joint;
+    int type;
+    const btRigidBody* a;
+    const btRigidBody* b;
+};
+
+struct WorldImage {
+    BroadphaseImage broadphase;
+    ContactImage contacts;
+    GhostImage ghosts;
+    std::vector<SavedObject> objects;  // in the world's order
+    std::vector<btRigidBody*> bodies;  // the same, of those that are not static
+    std::vector<SavedJoint> joints;
+    std::vector<btActionInterface*> actions;
+    std::vector<const void*> pointers;
+    ByteWriter fields;  // of the world, the objects, the joints and the actions
+    bool isSaved = false;
+
+    /// What is not covered; empty where all is.
+    [[nodiscard]] static std::string faultOf(btDiscreteDynamicsWorld& world,
+                                             const SpatialHashBroadphase& broadphase);
+
+    /// All but the broadphase. Returns what is wrong with the contacts.
+    [[nodiscard]] std::string save(btDiscreteDynamicsWorld& world,
+                                   const SpatialHashBroadphase& broadphase);
+
+    /// What is missing, or not as it was; empty where all is there. Lists what has been added.
+    [[nodiscard]] std::string find(btDiscreteDynamicsWorld& world, const Returned& returned) const;
+    /// Takes memory beforehand, for what follows.
+    void makeRoom(btDiscreteDynamicsWorld& world, SpatialHashBroadphase& broadphase) const;
+    void takeOutAdded(btDiscreteDynamicsWorld& world) const;
+    void restore(btDiscreteDynamicsWorld& world, SpatialHashBroadphase& broadphase) const;
+
+    [[nodiscard]] std::size_t memoryBytes() const noexcept {
+        return sizeof(*this) + broadphase.memoryBytes() + contacts.memoryBytes() +
+               ghosts.memoryBytes() + objects.capacity() * sizeof(objects[0]) +
+               joints.capacity() * sizeof(joints[0]) + fields.memoryBytes() +
+               (bodies.capacity() + actions.capacity() + pointers.capacity() +
+                addedObjects.capacity() + addedJoints.capacity() + addedActions.capacity()) *
+                   sizeof(void*) +
+               present.memoryBytes();
+    }
+
+    // Scratch of a restore(): what is to be taken out.
+    mutable FlatSet present;
+    mutable std::vector<btCollisionObject*> addedObjects;
+    mutable std::vector<btTypedConstraint*> addedJoints;
+    mutable std::vector<btActionInterface*> addedActions;
+};
+
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

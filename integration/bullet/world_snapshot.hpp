@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A Bullet world over a SpatialHashBroadphase as it was after some step, to go back to: for rollback, replays,
+// training and editors. The steps that follow give the same bits as they did.
+//
+//     WorldSnapshot snapshot;
+//     std::string fault = snapshot.save(world, broadphase);     // empty: all is well
+//     ...                                                       // steps, bodies that come and go
+//     fault = snapshot.restore(world, broadphase);
+//
+// What is saved  Of objects all that a step depends on: places, velocities, forces, mass, damping, friction, flags,
+//           activation, whom they ignore. Contacts with their impulses, and the order of pairs and contacts.
+//           Joints with their motors, limits and impulses. Ghosts and characters. Gravity, the solver's settings
+//           and its seed, the time that is left of a step. The broadphase, its grid, pairs and sweeps.
+// What is not  What is the program's: user pointers and indices, motion states, joint feedback, debug colours, fields
+//           of classes derived from Bullet's. Shapes: only which one an object has.
+// Refused   by a sentence that names it: soft bodies, multibodies, actions other than btKinematicCharacterController
+//           (btRaycastVehicle is one), pair caches other than PairCache, contact points with user data, solvers
+//           other than btSequentialImpulseConstraintSolver and those derived from it, joints of unknown types.
+// Who came  Objects, joints and characters that were added since are taken out of the world; delete them yourself.
+// Who went  Those removed since are needed: hand them over (Returned), or restore() says which are missing, and
+//           nothing has changed. An object that was removed and added again needs no handing over.
+// Lifetime  Shapes must live as long as a snapshot in which an object has them. Compound shapes must be as they were.
+// Callbacks Contact callbacks are not told of contacts that come back or go, nor ghost callbacks of pairs.
+// Order     Save and restore between steps, outside of all callbacks (refused).
+// Memory    Keeps its own: to save again takes none in a frame like the last one. Where it runs out, std::bad_alloc
+//           is passed on: save() leaves the snapshot empty, restore() has changed nothing.
+// Threads   Needs the world and this object for itself.
+
+#include <integration/bullet/export.hpp>
+#include <integration/bullet/precision.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+class btActionInterface;
+class btDiscreteDynamicsWorld;
+class btTypedConstraint;
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+
+/// What was removed from a world, and is handed over to go back into it.
+struct Returned {
+    std::span<btCollisionObject* const> objects{};
+    std::span<btTypedConstraint* const> joints{};
+    std::span<btActionInterface* const> actions{};
+};
+
+/// Keeps a world, and puts it back.
+class HASHPHASE_BULLET_EXPORT WorldSnapshot {
+public:
+    /// An empty one.
+    WorldSnapshot() noexcept;
+    ~WorldSnapshot();
+    WorldSnapshot(WorldSnapshot&& other) noexcept;
+    WorldSnapshot& operator=(WorldSnapshot&& other) noexcept;
+
+    /// Saves the world, whose broadphase this is. Returns what is wrong, in a sentence, and leaves the snapshot
+    /// empty then; else nothing. Cost: a pass over objects, pairs and contacts.
+    [[nodiscard]] std::string save(btDiscreteDynamicsWorld& world,
+                                   const SpatialHashBroadphase& broadphase);
+
+    /// Puts the world back to what was saved of it. Returns what is wrong, in a sentence; nothing has changed
+    /// then. Any number of times, and to any of several snapshots. Cost: as save(), and that of removing what was
+    /// added and of making algorithms for pairs that were not there.
+    [[nodiscard]] std::string restore(btDiscreteDynamicsWorld& world,
+                                      SpatialHashBroadphase& broadphase,
+                                      const Returned& returned = {}) const;
+
+    /// Whether there is nothing to restore.
+    [[nodiscard]] bool isEmpty() const noexcept;
+
+    /// Bytes held, capacity included.
+    [[nodiscard]] std::size_t memoryBytes() const noexcept;
+
+private:
+    struct Image;
+    std::unique_ptr<Image> image_;
+};
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
