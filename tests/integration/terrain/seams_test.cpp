@@ -282,7 +282,7 @@ TYPED_TEST(TerrainSeams, ForgetTheirToleranceWhenTheGroundIsCleared) {
                                                   at<TypeParam>(0, 2, 8)};
     world.terrain.add(corners);
     EXPECT_EQ(world.terrain.seamTolerance(origin),
-              8 * std::numeric_limits<TypeParam>::epsilon() * 12);
+              8 * std::numeric_limits<TypeParam>::epsilon() * 16);
     world.terrain.clear();
     EXPECT_EQ(world.terrain.seamTolerance(origin), 0);
 }
