@@ -167,10 +167,10 @@ public:
     /// axes, each off by half an epsilon.) In single precision a twentieth of a millimetre for chunks of 32 m
     /// near the origin, 1 mm at 1 km; in double precision 2 pm.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
-        return setTolerance_ ? *setTolerance_
-                             : kSeamRoundings *
-                                   (seamGroups_.farthest(point[alongX_], point[alongZ_]) +
-                                    seamGroups_.extent());
+        return setTolerance_
+                   ? *setTolerance_
+                   : kSeamRoundings * (seamGroups_.farthest(point[alongX_], point[alongZ_]) +
+                                       seamGroups_.extent());
     }
 
     // --- Queries ---------------------------------------------------------------------------------

@@ -67,16 +67,17 @@ struct Terrain<Scalar>::Plan {
 
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::add(std::span<const Point> corners) {
-    return detail::withCorners(
-        corners, [&](std::size_t count, const auto& cornersOf) { return addAll(count, cornersOf); });
+    return detail::withCorners(corners, [&](std::size_t count, const auto& cornersOf) {
+        return addAll(count, cornersOf);
+    });
 }
 
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::add(std::span<const Point> vertices,
                                     std::span<const std::uint32_t> indices) {
-    return detail::withCorners(
-        vertices, indices,
-        [&](std::size_t count, const auto& cornersOf) { return addAll(count, cornersOf); });
+    return detail::withCorners(vertices, indices, [&](std::size_t count, const auto& cornersOf) {
+        return addAll(count, cornersOf);
+    });
 }
 
 template <class Scalar>
@@ -89,10 +90,9 @@ AddedTriangles Terrain<Scalar>::replace(std::uint32_t first, std::span<const Poi
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::replace(std::uint32_t first, std::span<const Point> vertices,
                                         std::span<const std::uint32_t> indices) {
-    return detail::withCorners(vertices, indices,
-                               [&](std::size_t count, const auto& cornersOf) {
-                                   return replaceAll(first, count, cornersOf);
-                               });
+    return detail::withCorners(vertices, indices, [&](std::size_t count, const auto& cornersOf) {
+        return replaceAll(first, count, cornersOf);
+    });
 }
 
 template <class Scalar>
@@ -166,9 +166,8 @@ void Terrain<Scalar>::write(const Plan& plan, const CornersOf& cornersOf) {
     if (!plan.box.isEmpty()) {
         const Aabb<double> box = plan.box.template cast<double>();
         const double heights = std::max(std::abs(box.min()[up_]), std::abs(box.max()[up_]));
-        seamGroup =
-            seamGroups_.add((box.max() - box.min()).maxCoeff() + heights,
-                            count - static_cast<std::uint32_t>(refused.size()));
+        seamGroup = seamGroups_.add((box.max() - box.min()).maxCoeff() + heights,
+                                    count - static_cast<std::uint32_t>(refused.size()));
     }
     auto nextRefused = refused.begin();
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -108,9 +108,8 @@ TYPED_TEST(GroundChanged, IsToldToAllThatAsk) {
 TYPED_TEST(GroundChanged, JoinsBoxesThatAreOneTogether) {
     ChangedGround<TypeParam> changed(this->terrain);
     const auto quad = quads<TypeParam>(
-        *std::make_unique<Random>(1), 1, [](std::uint32_t i, std::uint32_t k) {
-            return at<TypeParam>(i, i == k ? 1 : 0, k);
-        });
+        *std::make_unique<Random>(1), 1,
+        [](std::uint32_t i, std::uint32_t k) { return at<TypeParam>(i, i == k ? 1 : 0, k); });
     addTo(this->terrain, quad);
     EXPECT_EQ(changed.boxes().size(), 1U);
     this->terrain.remove(0, 2);

@@ -110,7 +110,8 @@ TYPED_TEST(SeamTolerance, OfZeroLeavesWhatIsBetweenOpen) {
     std::vector<Vector3<TypeParam>> two = this->corner(-1, 1);
     const std::vector<Vector3<TypeParam>> right = this->corner(1);
     for (const Vector3<TypeParam>& corner : right) {
-        two.emplace_back(corner[0] + edge + std::numeric_limits<TypeParam>::epsilon(), 0, corner[2]);
+        two.emplace_back(corner[0] + edge + std::numeric_limits<TypeParam>::epsilon(), 0,
+                         corner[2]);
     }
     this->terrain.add(two);
     const Vector3<TypeParam> between(edge, 1, 0);
