@@ -15,8 +15,8 @@
 // Numbers    A triangle keeps its number until it is removed. Then the number is free, and a later triangle
 //            takes it: a ground of which as much comes as goes has no more numbers after hours. A free number
 //            has NaN corners, no normal and the null proxy, as that of a refused triangle.
-// History    Answers are those of a new terrain to which the triangles that are left were added by such calls,
-//            but for numbers, which decide between equal heights.
+// History    What has left decides nothing: answers are those of a new terrain with the same triangles, under the
+//            same numbers, and the same seam tolerance, which follows the calls that brought these triangles.
 // Others     The grid may hold other proxies, and may change; this costs only time.
 // Exact      A point on an edge or a corner belongs to all triangles there: no point of a closed
 //            surface is lost between two triangles. Heights are found in double precision.
@@ -34,6 +34,7 @@
 //            has, bad tolerances, and more than 2^32 - 2 triangles are asserted, and change nothing.
 
 #include <broadphase/core/compiler.hpp>
+#include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/up_axis.hpp>
@@ -74,7 +75,7 @@ struct AddedTriangles {
 };
 
 template <class Scalar>
-class ChangedGround;
+class HASHPHASE_TERRAIN_TEMPLATE_EXPORT ChangedGround;
 
 /// Triangles that stand still, and how high the ground is.
 template <class Scalar>
@@ -248,15 +249,12 @@ private:
     QueryCost searchEach(std::span<const Point> points, std::span<Found> found,
                          ParallelFor parallelFor, const MakeSearch& makeSearch) const;
 
-    template <class CornersOf>
-    AddedTriangles addAll(std::size_t count, const CornersOf& cornersOf);
-    template <class CornersOf>
-    AddedTriangles replaceAll(std::uint32_t first, std::size_t count, const CornersOf& cornersOf);
+    using CornersOf = FunctionRef<Corners(std::size_t)>;
+    AddedTriangles addAll(std::size_t count, CornersOf cornersOf);
+    AddedTriangles replaceAll(std::uint32_t first, std::size_t count, CornersOf cornersOf);
     struct Plan;
-    template <class CornersOf>
-    [[nodiscard]] Plan prepare(std::uint32_t first, std::size_t count, const CornersOf& cornersOf);
-    template <class CornersOf>
-    void write(const Plan& plan, const CornersOf& cornersOf);
+    [[nodiscard]] Plan prepare(std::uint32_t first, std::size_t count, CornersOf cornersOf);
+    void write(const Plan& plan, CornersOf cornersOf);
     void setTriangle(std::uint32_t number, const Corners& corners, std::uint8_t seamGroup);
     void unsetTriangle(std::uint32_t number);
     [[nodiscard]] bool areTaken(std::uint32_t first, std::size_t count) const noexcept;
@@ -281,7 +279,7 @@ private:
     }
 
     /// The triangle of a proxy, or kNone where it is someone else's.
-    [[nodiscard]] std::uint32_t numberOf(ProxyId id) const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t numberOf(ProxyId id) const noexcept {
         return id.index < triangleOfProxy_.size() ? triangleOfProxy_[id.index] : kNone;
     }
 

@@ -24,28 +24,28 @@ template <class Scalar>
     return Vector3<Scalar>::Constant(std::numeric_limits<Scalar>::quiet_NaN());
 }
 
-/// Calls `take` with a function that returns the corners of the i-th triangle.
-template <class Scalar, class Take>
-auto withCorners(std::span<const Vector3<Scalar>> corners, const Take& take) {
-    HASHPHASE_ASSERT(corners.size() % 3 == 0, "Each triangle has three corners.");
-    return take(corners.size() % 3 == 0 ? corners.size() / 3 : 0, [=](std::size_t i) {
-        return std::array{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
-    });
+/// How many triangles have so many corners.
+[[nodiscard]] inline std::size_t triangleCount(std::size_t cornerCount) {
+    HASHPHASE_ASSERT(cornerCount % 3 == 0, "Each triangle has three corners.");
+    return cornerCount % 3 == 0 ? cornerCount / 3 : 0;
 }
 
-/// The same by the places of the corners in `vertices`; NaN where there is no such vertex.
-template <class Scalar, class Take>
-auto withCorners(std::span<const Vector3<Scalar>> vertices, std::span<const std::uint32_t> indices,
-                 const Take& take) {
-    HASHPHASE_ASSERT(indices.size() % 3 == 0, "Each triangle has three corners.");
-    return take(indices.size() % 3 == 0 ? indices.size() / 3 : 0, [=](std::size_t i) {
-        std::array<Vector3<Scalar>, 3> corners;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t index = indices[3 * i + k];
-            corners[k] = index < vertices.size() ? vertices[index] : nanPoint<Scalar>();
-        }
-        return corners;
-    });
+/// The corners of a triangle; NaN where there is no such vertex.
+template <class Scalar>
+[[nodiscard]] std::array<Vector3<Scalar>, 3> cornersAt(std::span<const Vector3<Scalar>> corners,
+                                                       std::size_t triangle) {
+    return {corners[3 * triangle], corners[3 * triangle + 1], corners[3 * triangle + 2]};
+}
+template <class Scalar>
+[[nodiscard]] std::array<Vector3<Scalar>, 3> cornersAt(std::span<const Vector3<Scalar>> vertices,
+                                                       std::span<const std::uint32_t> indices,
+                                                       std::size_t triangle) {
+    std::array<Vector3<Scalar>, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t index = indices[3 * triangle + k];
+        corners[k] = index < vertices.size() ? vertices[index] : nanPoint<Scalar>();
+    }
+    return corners;
 }
 
 template <class Scalar>
@@ -67,37 +67,32 @@ struct Terrain<Scalar>::Plan {
 
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::add(std::span<const Point> corners) {
-    return detail::withCorners(corners, [&](std::size_t count, const auto& cornersOf) {
-        return addAll(count, cornersOf);
-    });
+    return addAll(detail::triangleCount(corners.size()),
+                  [&](std::size_t i) { return detail::cornersAt(corners, i); });
 }
 
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::add(std::span<const Point> vertices,
                                     std::span<const std::uint32_t> indices) {
-    return detail::withCorners(vertices, indices, [&](std::size_t count, const auto& cornersOf) {
-        return addAll(count, cornersOf);
-    });
+    return addAll(detail::triangleCount(indices.size()),
+                  [&](std::size_t i) { return detail::cornersAt(vertices, indices, i); });
 }
 
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::replace(std::uint32_t first, std::span<const Point> corners) {
-    return detail::withCorners(corners, [&](std::size_t count, const auto& cornersOf) {
-        return replaceAll(first, count, cornersOf);
-    });
+    return replaceAll(first, detail::triangleCount(corners.size()),
+                      [&](std::size_t i) { return detail::cornersAt(corners, i); });
 }
 
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::replace(std::uint32_t first, std::span<const Point> vertices,
                                         std::span<const std::uint32_t> indices) {
-    return detail::withCorners(vertices, indices, [&](std::size_t count, const auto& cornersOf) {
-        return replaceAll(first, count, cornersOf);
-    });
+    return replaceAll(first, detail::triangleCount(indices.size()),
+                      [&](std::size_t i) { return detail::cornersAt(vertices, indices, i); });
 }
 
 template <class Scalar>
-template <class CornersOf>
-AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& cornersOf) {
+AddedTriangles Terrain<Scalar>::addAll(std::size_t count, CornersOf cornersOf) {
     const std::uint32_t first = free_.firstFit(count, size());
     HASHPHASE_ASSERT(count <= kNone - first, "A terrain holds fewer than 2^32 - 1 triangles.");
     if (count > kNone - first) {
@@ -114,9 +109,8 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& corne
 }
 
 template <class Scalar>
-template <class CornersOf>
 AddedTriangles Terrain<Scalar>::replaceAll(std::uint32_t first, std::size_t count,
-                                           const CornersOf& cornersOf) {
+                                           CornersOf cornersOf) {
     HASHPHASE_ASSERT(areTaken(first, count), "Only triangles that were not removed are replaced.");
     if (!areTaken(first, count)) {
         return {};
@@ -129,9 +123,7 @@ AddedTriangles Terrain<Scalar>::replaceAll(std::uint32_t first, std::size_t coun
 
 // Names those that are refused, and makes room for all that comes.
 template <class Scalar>
-template <class CornersOf>
-auto Terrain<Scalar>::prepare(std::uint32_t first, std::size_t count, const CornersOf& cornersOf)
-    -> Plan {
+auto Terrain<Scalar>::prepare(std::uint32_t first, std::size_t count, CornersOf cornersOf) -> Plan {
     const auto isGood = [](const Point& corner) {
         return (corner.array().abs() <= std::numeric_limits<Scalar>::max()).all() &&
                (corner.template cast<double>().array().abs() <= kFarthest).all();
@@ -159,8 +151,7 @@ auto Terrain<Scalar>::prepare(std::uint32_t first, std::size_t count, const Corn
 }
 
 template <class Scalar>
-template <class CornersOf>
-void Terrain<Scalar>::write(const Plan& plan, const CornersOf& cornersOf) {
+void Terrain<Scalar>::write(const Plan& plan, CornersOf cornersOf) {
     const auto& [first, count, refused] = plan.triangles;
     std::uint8_t seamGroup = 0;
     if (!plan.box.isEmpty()) {

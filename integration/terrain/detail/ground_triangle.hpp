@@ -28,7 +28,7 @@ struct alignas(64) GroundTriangle {
     std::array<Scalar, 3> x;
     std::array<Scalar, 3> z;
     std::array<Scalar, 3> y;
-    bool hasHeights : 1 = false;    // not vertical, nor without an area
+    bool hasHeights = false;        // not vertical, nor without an area
     bool hasNormal : 1 = false;     // and not so thin that rounding hides where its plane is
     bool isTurned : 1 = false;      // the last two corners were exchanged
     std::uint8_t sizeExponent = 0;  // seen from above, no edge is longer than 2 to this - 128 [m]
