@@ -9,8 +9,9 @@
 //     changed.findStanding(grid, 0.05F, standing);
 //     changed.clear();
 //
-// A frame    Change the terrain; findStanding() in each grid with bodies; clear(). Without clear() the same
-//            bodies are found again, and more of them.
+// A frame    Change the terrain, update the grids, and then findStanding() in each grid with bodies; clear() at
+//            last. Without clear() the same bodies are found again, and more of them. Before the update, all is
+//            found as well, at the cost of one more.
 // Notes      The box of each triangle that was added, of each that was removed, and of each that was replaced
 //            by another, before and after. Boxes that make one box together become one. A shift of the origin
 //            is no change, and shifts them.

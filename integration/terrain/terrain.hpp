@@ -27,11 +27,11 @@
 // Threads    Queries are const and may run on any number of threads. Everything else needs the terrain, its grid
 //            and its ChangedGround for itself.
 // Memory     A query allocates nothing, unless a few points meet hundreds of boxes. A query about more than a
-//            thousand points takes 0.3 MB of the stack.
-//            Where it runs out in a call that changes triangles, nothing has changed.
+//            thousand points takes 0.3 MB of the stack. Where it runs out in a call that changes triangles,
+//            nothing has changed.
 // Bad data   Triangles with a bad corner are refused and named; bad points and radii have no ground.
 // Misuse     Corners that do not come in threes, batches of unequal lengths, numbers that no triangle
-//            has, bad tolerances, and more than 2^32 - 2 triangles are asserted, and change nothing.
+//            has, bad tolerances, and more than 2^32 - 2 triangles are asserted. Such a call changes nothing.
 
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/function_ref.hpp>
