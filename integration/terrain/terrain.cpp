@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/terrain/terrain.hpp>
 
+#include <integration/terrain/terrain_changes.inl>
 #include <integration/terrain/terrain_queries.inl>
 
-#include <broadphase/core/ensure_capacity.hpp>
-#include <broadphase/core/on_failure.hpp>
 #include <broadphase/diagnostics.hpp>
-
-#include <algorithm>
-#include <limits>
-#include <utility>
 
 namespace hashphase {
 
@@ -19,97 +14,22 @@ Terrain<Scalar>::Terrain(Grid<Scalar>& grid, UpAxis up)
 
 template <class Scalar>
 Terrain<Scalar>::~Terrain() {
+    HASHPHASE_ASSERT(changed_.empty(), "A terrain outlives each ChangedGround of it.");
+    for (ChangedGround<Scalar>* changed : changed_) {
+        changed->terrain_ = nullptr;
+    }
+    changed_.clear();
     clear();
 }
 
 template <class Scalar>
-AddedTriangles Terrain<Scalar>::add(std::span<const Point> corners) {
-    HASHPHASE_ASSERT(corners.size() % 3 == 0, "Each triangle has three corners.");
-    return addAll(corners.size() / 3, [&](std::size_t i) {
-        return Corners{corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
-    });
-}
-
-template <class Scalar>
-AddedTriangles Terrain<Scalar>::add(std::span<const Point> vertices,
-                                    std::span<const std::uint32_t> indices) {
-    HASHPHASE_ASSERT(indices.size() % 3 == 0, "Each triangle has three corners.");
-    const Point none = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
-    return addAll(indices.size() / 3, [&](std::size_t i) {
-        Corners corners;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t index = indices[3 * i + k];
-            corners[k] = index < vertices.size() ? vertices[index] : none;
-        }
-        return corners;
-    });
-}
-
-// All of them or, should memory run out, none.
-template <class Scalar>
-template <class CornersOf>
-AddedTriangles Terrain<Scalar>::addAll(std::size_t count, const CornersOf& cornersOf) {
-    AddedTriangles added;
-    added.first = size();
-    const Aabb<Scalar> boundsBefore = bounds_;
-    const Point tilesBefore = tilesPerMetre_;
-    Aabb<Scalar> box;
-    const detail::OnFailure addNone([&] {
-        removeFrom(added.first);
-        bounds_ = boundsBefore;
-        tilesPerMetre_ = tilesBefore;
-    });
-    grid_->reserve(grid_->size() + count);
-    detail::ensureCapacity(triangles_, triangles_.size() + count);
-    detail::ensureCapacity(proxies_, proxies_.size() + count);
-    for (std::size_t i = 0; i < count; ++i) {
-        addOne(cornersOf(i), added, box);
+void Terrain<Scalar>::setSeamTolerance(std::optional<Scalar> tolerance) {
+    const bool isGood = !tolerance || (*tolerance >= 0 && detail::isFinite(*tolerance) &&
+                                       static_cast<double>(*tolerance) <= kFarthest);
+    HASHPHASE_ASSERT(isGood, "A tolerance is 0 or more, and no more than Terrain::kFarthest.");
+    if (isGood) {
+        setTolerance_ = tolerance;
     }
-    if (!box.isEmpty()) {
-        noteReach(box);
-    }
-    return added;
-}
-
-template <class Scalar>
-void Terrain<Scalar>::noteReach(const Aabb<Scalar>& mesh) {
-    const Aabb<double> box = mesh.template cast<double>();
-    const double heights = std::max(std::abs(box.min()[up_]), std::abs(box.max()[up_]));
-    const double extent = (box.max() - box.min()).maxCoeff();
-    meshReach_ =
-        std::max(meshReach_, static_cast<Scalar>(std::min(extent + heights, kLargestMesh)));
-}
-
-template <class Scalar>
-void Terrain<Scalar>::addOne(const Corners& corners, AddedTriangles& added,
-                             Aabb<Scalar>& boxOfAll) {
-    HASHPHASE_ASSERT(size() < kNone, "A terrain holds fewer than 2^32 - 1 triangles.");
-    const std::uint32_t number = size();
-    ++added.count;
-    const auto isGood = [](const Point& corner) {
-        return (corner.array().abs() <= std::numeric_limits<Scalar>::max()).all() &&
-               (corner.template cast<double>().array().abs() <= kFarthest).all();
-    };
-    if (!std::all_of(corners.begin(), corners.end(), isGood)) {
-        const Point nan = Point::Constant(std::numeric_limits<Scalar>::quiet_NaN());
-        added.refused.push_back(number);
-        triangles_.push_back(groundTriangle({nan, nan, nan}));
-        proxies_.emplace_back();
-        return;
-    }
-    Aabb<Scalar> box(corners[0]);
-    box.extend(corners[1]);
-    box.extend(corners[2]);
-    boxOfAll.extend(box);
-    bounds_.extend(box);
-    tilesPerMetre_ = bounds_.sizes().cwiseInverse() * Scalar(kTilesPerSide);
-    triangles_.push_back(groundTriangle(corners));
-    const ProxyId id = grid_->add(box, Mobility::resting);
-    proxies_.push_back(id);
-    if (triangleOfProxy_.size() <= id.index) {
-        triangleOfProxy_.resize(id.index + std::size_t{1}, kNone);
-    }
-    triangleOfProxy_[id.index] = number;
 }
 
 template <class Scalar>
@@ -134,32 +54,6 @@ detail::GroundTriangle<Scalar> Terrain<Scalar>::groundTriangle(const Corners& co
 }
 
 template <class Scalar>
-void Terrain<Scalar>::clear() {
-    removeFrom(0);
-    triangleOfProxy_.clear();
-    bounds_.setEmpty();
-    meshReach_ = 0;
-    shifted_.setZero();
-    isShifted_ = false;
-}
-
-template <class Scalar>
-void Terrain<Scalar>::removeFrom(std::size_t first) {
-    for (std::size_t i = first; i < proxies_.size(); ++i) {
-        const ProxyId id = proxies_[i];
-        if (id.isNull()) {
-            continue;
-        }
-        grid_->remove(id);
-        if (id.index < triangleOfProxy_.size()) {
-            triangleOfProxy_[id.index] = kNone;
-        }
-    }
-    triangles_.resize(first);
-    proxies_.resize(first);
-}
-
-template <class Scalar>
 void Terrain<Scalar>::shiftOrigin(const Point& shift) {
     HASHPHASE_ASSERT(shift.allFinite(), "The origin is shifted by what is finite.");
     if (!shift.allFinite()) {
@@ -170,11 +64,16 @@ void Terrain<Scalar>::shiftOrigin(const Point& shift) {
         for (Point& corner : shifted) {
             corner -= shift;
         }
+        const std::uint8_t seamGroup = triangles_[number].seamGroup;
         triangles_[number] = groundTriangle(shifted);
+        triangles_[number].seamGroup = seamGroup;
     }
     bounds_.translate(-shift);
-    shifted_ += shift;
-    isShifted_ = !shifted_.isZero(0);
+    nextBounds_.translate(-shift);
+    seamGroups_.shiftOrigin(shift[alongX_], shift[alongZ_]);
+    for (ChangedGround<Scalar>* changed : changed_) {
+        changed->shiftOrigin(shift);
+    }
 }
 
 template <class Scalar>
@@ -211,7 +110,8 @@ ProxyId Terrain<Scalar>::proxy(std::uint32_t triangle) const {
 template <class Scalar>
 std::size_t Terrain<Scalar>::memoryBytes() const noexcept {
     return triangles_.capacity() * sizeof(triangles_[0]) + proxies_.capacity() * sizeof(ProxyId) +
-           triangleOfProxy_.capacity() * sizeof(std::uint32_t);
+           triangleOfProxy_.capacity() * sizeof(std::uint32_t) + seamGroups_.memoryBytes() +
+           free_.memoryBytes();
 }
 
 template class HASHPHASE_INSTANCE_EXPORT Terrain<float>;

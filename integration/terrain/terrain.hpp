@@ -4,12 +4,19 @@
 // The ground: triangles that stand still, filed in the grid once, each by its box. Says how high the
 // ground is below a point, and where a sphere rests on it. After the object-terrain test of Hastings,
 // Mesit and Guha, which holds on flat ground; here a sphere rests on slopes, edges and corners too.
+// Triangles come, change and go one by one or in chunks, at the cost of those that do.
 //
 //     Terrain<float> terrain(grid);
 //     terrain.add(corners);
 //     if (const auto ground = terrain.surfaceBelow(point)) { point.y() = ground->height; }
 //
-// A frame    Add triangles once. Then ask; ask about many points in one call.
+// A frame    Change the ground, then ask; ask about many points in one call. Where the ground has changed, and
+//            what stands there, says ChangedGround (changed_ground.hpp).
+// Numbers    A triangle keeps its number until it is removed. Then the number is free, and a later triangle
+//            takes it: a ground of which as much comes as goes has no more numbers after hours. A free number
+//            has NaN corners, no normal and the null proxy, as that of a refused triangle.
+// History    What has left decides nothing: answers are those of a new terrain with the same triangles, under the
+//            same numbers, and the same seam tolerance, which follows the calls that brought these triangles.
 // Others     The grid may hold other proxies, and may change; this costs only time.
 // Exact      A point on an edge or a corner belongs to all triangles there: no point of a closed
 //            surface is lost between two triangles. Heights are found in double precision.
@@ -17,18 +24,23 @@
 //            point between the edges belongs to the nearest triangle: see seamTolerance(). Wider gaps stay
 //            gaps. A triangle exactly below the point, at about that height, goes before.
 // Units      metres. Heights are coordinates along the axis that is up.
-// Threads    Queries are const and may run on any number of threads.
+// Threads    Queries are const and may run on any number of threads. Everything else needs the terrain, its grid
+//            and its ChangedGround for itself.
 // Memory     A query allocates nothing, unless a few points meet hundreds of boxes. A query about more than a
-//            thousand points takes 0.3 MB of the stack.
+//            thousand points takes 0.3 MB of the stack. Where it runs out in a call that changes triangles,
+//            nothing has changed.
 // Bad data   Triangles with a bad corner are refused and named; bad points and radii have no ground.
 // Misuse     Corners that do not come in threes, batches of unequal lengths, numbers that no triangle
-//            has, and more than 2^32 - 2 triangles are asserted.
+//            has, bad tolerances, and more than 2^32 - 2 triangles are asserted. Such a call changes nothing.
 
 #include <broadphase/core/compiler.hpp>
+#include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/up_axis.hpp>
+#include <integration/terrain/detail/free_runs.hpp>
 #include <integration/terrain/detail/ground_triangle.hpp>
+#include <integration/terrain/detail/seam_groups.hpp>
 #include <integration/terrain/export.hpp>
 
 #include <algorithm>
@@ -54,13 +66,16 @@ struct Ground {
     friend bool operator==(const Ground&, const Ground&) = default;
 };
 
-/// What Terrain::add() did. Triangles are numbered in the order in which they were handed in, including
-/// refused ones.
+/// What Terrain::add() and replace() did. Triangles are numbered in the order in which they were handed in,
+/// including refused ones.
 struct AddedTriangles {
     std::uint32_t first = 0;             ///< number of the first triangle
     std::uint32_t count = 0;             ///< how many were handed in
     std::vector<std::uint32_t> refused;  ///< numbers of triangles with a bad corner
 };
+
+template <class Scalar>
+class HASHPHASE_TERRAIN_TEMPLATE_EXPORT ChangedGround;
 
 /// Triangles that stand still, and how high the ground is.
 template <class Scalar>
@@ -73,9 +88,9 @@ public:
     /// Coordinates and radii up to this are good [m]: in single precision all finite ones.
     static constexpr double kFarthest = 1e70;
 
-    /// Keeps a reference to the grid, which must outlive the terrain. The destructor removes the terrain's
-    /// proxies.
+    /// Keeps a reference to the grid, which must outlive the terrain.
     explicit Terrain(Grid<Scalar>& grid, UpAxis up = UpAxis::y);
+    /// Removes the terrain's proxies. Destroy each ChangedGround of the terrain first (asserted).
     ~Terrain();
     Terrain(const Terrain&) = delete;
     Terrain& operator=(const Terrain&) = delete;
@@ -84,13 +99,27 @@ public:
 
     /// Adds triangles, three corners [m] each. Refuses triangles with a corner that is NaN, infinite or
     /// farther than kFarthest. Vertical triangles, and those without an area, carry spheres but have no
-    /// height themselves. Either side may be up. Where memory runs out, nothing has been added. Cost: O(1)
-    /// amortised for each triangle.
+    /// height themselves. Either side may be up. They take the lowest numbers that are free side by side, or
+    /// else those from size() on. Cost: O(1) amortised for each triangle, and a step for each run of free
+    /// numbers; where as much was removed before, it allocates nothing.
     AddedTriangles add(std::span<const Point> corners);
 
     /// Adds triangles by the places of their corners in `vertices`, three indices each. Also refuses
     /// triangles with an index beyond the last vertex.
     AddedTriangles add(std::span<const Point> vertices, std::span<const std::uint32_t> indices);
+
+    /// Sets the corners of the triangles from number `first` on, as many as are handed in; all else is as in
+    /// add(). They keep their numbers, and their proxies, but for those that are refused now or were before.
+    /// A corner that has not changed costs a comparison. Cost: O(1) for each triangle. Allocates nothing
+    /// unless triangles are refused, or were.
+    AddedTriangles replace(std::uint32_t first, std::span<const Point> corners);
+    AddedTriangles replace(std::uint32_t first, std::span<const Point> vertices,
+                           std::span<const std::uint32_t> indices);
+
+    /// Removes the triangles from number `first` on, and their proxies; refused ones, too. Their numbers are
+    /// free then, and must not be removed or replaced before they are taken again. Cost: O(1) for each
+    /// triangle, and a step for each run of free numbers.
+    void remove(std::uint32_t first, std::uint32_t count = 1);
 
     /// Removes all triangles, and their proxies; numbers begin at 0 again.
     void clear();
@@ -99,12 +128,13 @@ public:
     /// each Grid::shiftOrigin() of the grid. Cost: O(triangles).
     void shiftOrigin(const Point& shift);
 
-    /// Number of triangles handed in, including refused ones: all triangles' numbers are below it.
+    /// All numbers are below it: those of triangles, of refused ones, and free ones. The most that were taken
+    /// since clear(), and what did not fit between them.
     [[nodiscard]] std::uint32_t size() const noexcept {
         return static_cast<std::uint32_t>(triangles_.size());
     }
 
-    /// The corners [m] of a triangle, in the order in which they were added; NaN for a refused one.
+    /// The corners [m] of a triangle, in the order in which they were handed in; NaN for a refused one.
     [[nodiscard]] Corners corners(std::uint32_t triangle) const;
 
     /// Unit normal of the side that is up; zero where the triangle has no heights.
@@ -113,19 +143,35 @@ public:
     /// The triangle's proxy in the grid; null for a refused one.
     [[nodiscard]] ProxyId proxy(std::uint32_t triangle) const;
 
-    /// Returns how far beside a triangle a point may lie, as seen from above, and still belong to it where no
-    /// other triangle is [m]: the amount by which rounding may move an edge near the point. This is 8 epsilon
-    /// of Scalar times a sum: the point's larger coordinate along the ground, now or before the shifts of the
-    /// origin, and the largest extent and height of the triangles of one add(), at most 16 km. (A corner
-    /// placed by a transform is six sums and products of such numbers along two axes, each off by half an
-    /// epsilon.) In single precision a twentieth of a millimetre for chunks of 32 m near the origin, 1 mm at
-    /// 1 km; in double precision 2 pm.
+    /// The number of the triangle that has the proxy; nothing where the proxy is not the terrain's. Leads from
+    /// what a query of the grid finds to the triangle. Cost: O(1).
+    [[nodiscard]] std::optional<std::uint32_t> triangleOf(ProxyId id) const noexcept {
+        const std::uint32_t number = numberOf(id);
+        return number != kNone && proxies_[number] == id ? std::optional(number) : std::nullopt;
+    }
+
+    // --- Seams -----------------------------------------------------------------------------------
+
+    /// Sets how far beside a triangle a point may lie, as seen from above, and still belong to it where no
+    /// other triangle is [m], for all points; 0 for not at all. Without a value it follows the triangles, as it
+    /// does by default. For those whose corners were computed from larger numbers than seamTolerance() knows
+    /// of, or who want it to be the same whatever comes and goes. Gaps twice as wide are closed, and steps of
+    /// the ground count as so much wider. NaN, negative numbers and those above kFarthest are asserted, and
+    /// change nothing. Outlasts clear(). Cost: O(1).
+    void setSeamTolerance(std::optional<Scalar> tolerance);
+
+    /// Returns what was set, or how far by itself: the amount by which rounding may move an edge near the
+    /// point [m]. This is 8 epsilon of Scalar times a sum: the point's larger coordinate along the ground, now
+    /// or before the shifts of the origin, and the largest extent and height of the triangles of one add() or
+    /// replace(), rounded up to a power of two, at most 16 km. Only triangles count that are left, and shifts
+    /// since they came. (A corner placed by a transform is six sums and products of such numbers along two
+    /// axes, each off by half an epsilon.) In single precision a twentieth of a millimetre for chunks of 32 m
+    /// near the origin, 1 mm at 1 km; in double precision 2 pm.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
-        Scalar farthest = along(point);
-        if (isShifted_) {
-            farthest = std::max(farthest, along(point + shifted_));
-        }
-        return kSeamRoundings * (farthest + meshReach_);
+        return setTolerance_
+                   ? *setTolerance_
+                   : kSeamRoundings * (seamGroups_.farthest(point[alongX_], point[alongZ_]) +
+                                       seamGroups_.extent());
     }
 
     // --- Queries ---------------------------------------------------------------------------------
@@ -164,10 +210,9 @@ public:
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:
+    friend class ChangedGround<Scalar>;
     static constexpr std::uint32_t kNone = ~std::uint32_t{0};
     static constexpr Scalar kSeamRoundings = 8 * std::numeric_limits<Scalar>::epsilon();
-    static constexpr double kLargestMesh =
-        16384;  // [m]; a stray corner makes no tolerance of 1e30 m
 
     template <class Search>
     struct Candidates;
@@ -204,11 +249,18 @@ private:
     QueryCost searchEach(std::span<const Point> points, std::span<Found> found,
                          ParallelFor parallelFor, const MakeSearch& makeSearch) const;
 
-    template <class CornersOf>
-    AddedTriangles addAll(std::size_t count, const CornersOf& cornersOf);
-    void noteReach(const Aabb<Scalar>& mesh);
-    void addOne(const Corners& corners, AddedTriangles& added, Aabb<Scalar>& boxOfAll);
-    void removeFrom(std::size_t first);
+    using CornersOf = FunctionRef<Corners(std::size_t)>;
+    AddedTriangles addAll(std::size_t count, CornersOf cornersOf);
+    AddedTriangles replaceAll(std::uint32_t first, std::size_t count, CornersOf cornersOf);
+    struct Plan;
+    [[nodiscard]] Plan prepare(std::uint32_t first, std::size_t count, CornersOf cornersOf);
+    void write(const Plan& plan, CornersOf cornersOf);
+    void setTriangle(std::uint32_t number, const Corners& corners, std::uint8_t seamGroup);
+    void unsetTriangle(std::uint32_t number);
+    [[nodiscard]] bool areTaken(std::uint32_t first, std::size_t count) const noexcept;
+    void includeInBounds(const Aabb<Scalar>& box) noexcept;
+    void tightenBounds(std::uint32_t changedCount) noexcept;
+    void noteChange(const Aabb<Scalar>& box) noexcept;
     [[nodiscard]] detail::GroundTriangle<Scalar> groundTriangle(const Corners& corners) const;
     [[nodiscard]] detail::Point2 above(const Point& point) const noexcept {
         return {static_cast<double>(point[alongX_]), static_cast<double>(point[alongZ_])};
@@ -227,7 +279,7 @@ private:
     }
 
     /// The triangle of a proxy, or kNone where it is someone else's.
-    [[nodiscard]] std::uint32_t triangleOf(ProxyId id) const noexcept {
+    [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t numberOf(ProxyId id) const noexcept {
         return id.index < triangleOfProxy_.size() ? triangleOfProxy_[id.index] : kNone;
     }
 
@@ -235,15 +287,19 @@ private:
     int up_;
     int alongX_;  // the other two axes
     int alongZ_;
-    Aabb<Scalar> bounds_;  // of all triangles
+    // Of all triangles, and some that were; decides only in which order many points are looked at.
+    Aabb<Scalar> bounds_;
+    Aabb<Scalar> nextBounds_;  // of those below boundsNext_, and what has come since it was 0
+    std::uint32_t boundsNext_ = 0;
     Point tilesPerMetre_ = Point::Zero();
-    Scalar meshReach_ = 0;           // the largest extent and height of what one add() has brought
-    Point shifted_ = Point::Zero();  // by all shifts of the origin
-    bool isShifted_ = false;
+    std::optional<Scalar> setTolerance_;
+    detail::SeamGroups<Scalar> seamGroups_;
+    detail::FreeRuns free_;
     std::vector<detail::GroundTriangle<Scalar>> triangles_;
     std::vector<ProxyId> proxies_;  // by triangle; null of refused ones
     std::vector<std::uint32_t>
         triangleOfProxy_;  // by ProxyId::index: nobody else's while ours lives
+    std::vector<ChangedGround<Scalar>*> changed_;
 };
 
 extern template class Terrain<float>;

@@ -23,7 +23,7 @@ template <class Search>
 struct Terrain<Scalar>::Candidates {
     void add(ProxyId id, Scalar /*key*/) noexcept {
         const auto& search = static_cast<const Search&>(*this);
-        const std::uint32_t number = search.terrain->triangleOf(id);
+        const std::uint32_t number = search.terrain->numberOf(id);
         if (number == kNone) {
             return;
         }
@@ -61,7 +61,7 @@ public:
     [[HASHPHASE_NO_INLINE]] void lookAt(const Terrain& terrain, std::uint32_t number,
                                         const detail::Point2& point, Scalar from) noexcept {
         const detail::GroundTriangle<Scalar>& triangle = terrain.triangles_[number];
-        if (!triangle.hasHeights) {
+        if (!triangle.hasHeights || tolerance_ == 0) {
             return;
         }
         const double height = detail::heightBeside(triangle, point, tolerance_);

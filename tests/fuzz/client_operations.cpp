@@ -241,15 +241,34 @@ private:
     }
 
     void clearOrUpdateGround(Arguments& arguments) {
-        if (arguments.byte() % 8 == 0) {
+        const unsigned what = arguments.byte() % 8U;
+        if (what == 0) {
             story_.tell("clear the ground");
             terrain_.clear();
             EXPECT_EQ(ground_.size(), 1U);
+        } else if (what < 4) {
+            changeTriangle(arguments, what == 1);
         } else {
             story_.tell("update the ground");
             ground_.update();
         }
         EXPECT_EQ(ground_.validate(), "");
+    }
+
+    void changeTriangle(Arguments& arguments, bool goes) {
+        const std::uint32_t number = arguments.below(terrain_.size() + 1);
+        if (number == terrain_.size() || terrain_.proxy(number).isNull()) {
+            return;
+        }
+        if (goes) {
+            story_.tell("remove triangle ", number);
+            terrain_.remove(number);
+            return;
+        }
+        auto corners = terrain_.corners(number);
+        corners[arguments.below(3)] = groundPoint(arguments);
+        story_.tell("replace triangle ", number, " ", corners[0], corners[1], corners[2]);
+        terrain_.replace(number, corners);
     }
 
     // Halves of metres, so that corners and edges are met and triangles lie in one plane.

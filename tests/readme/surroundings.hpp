@@ -33,6 +33,7 @@
 #include <integration/effects/simulation.hpp>
 #include <integration/picking/drag_selection.hpp>
 #include <integration/picking/pick.hpp>
+#include <integration/terrain/changed_ground.hpp>
 #include <integration/terrain/terrain.hpp>
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>

@@ -36,14 +36,38 @@ TEST(TerrainPage, GroundLiesBelow) {
     EXPECT_EQ(found[0]->height, settledAt);
 }
 
+TEST(TerrainPage, GroundChanges) {
+    const std::vector<Point> vertices{{-50, 0, 50}, {50, 0, 50}, {0, 10, -50}};
+    const std::vector<Point> finer{{-50, 1, 50}, {50, 1, 50}, {0, 11, -50}};
+    const std::vector<std::uint32_t> indices{0, 1, 2};
+    Grid<float> ground;
+    Terrain<float> terrain(ground);
+#include <terrain_6.inl>
+    EXPECT_EQ(ground.size(), 0U);
+
+    terrain.add(vertices, indices);
+    Grid<float> bodies;
+    const ProxyId low = bodies.add(boxAround<float>({0, 1, 0}, 1));
+    static_cast<void>(bodies.add(boxAround<float>({0, 30, 0}, 1)));
+    const Point blast(1, 2, 1);
+    const float radius = 2;
+    std::vector<ProxyId> woken;
+    const auto wake = [&](ProxyId id) { woken.push_back(id); };
+#include <terrain_7.inl>
+    EXPECT_EQ(ground.size(), 0U);
+    EXPECT_EQ(woken, std::vector<ProxyId>{low});
+}
+
 TEST(TerrainPage, BulletsTrianglesAreTaken) {
     const std::array<float, 4> heights{0, 0, 0, 0};
     const btHeightfieldTerrainShape shape(2, 2, heights.data(), btScalar(0), btScalar(1), 1, false);
     Grid<btScalar> ground;
     Terrain<btScalar> terrain(ground);
-#include <terrain_6.inl>
+#include <terrain_8.inl>
     EXPECT_EQ(error, "");
     EXPECT_EQ(terrain.size(), 2U);
+#include <terrain_9.inl>
+    EXPECT_LT(terrain.seamTolerance({0, 0, 0}), 0.001F);
 }
 
 }  // namespace

@@ -29,9 +29,10 @@ struct alignas(64) GroundTriangle {
     std::array<Scalar, 3> z;
     std::array<Scalar, 3> y;
     bool hasHeights = false;        // not vertical, nor without an area
-    bool hasNormal = false;         // and not so thin that rounding hides where its plane is
-    bool isTurned = false;          // the last two corners were exchanged
+    bool hasNormal : 1 = false;     // and not so thin that rounding hides where its plane is
+    bool isTurned : 1 = false;      // the last two corners were exchanged
     std::uint8_t sizeExponent = 0;  // seen from above, no edge is longer than 2 to this - 128 [m]
+    std::uint8_t seamGroup = 0;     // see SeamGroups
 
     [[nodiscard]] Point2 above(std::size_t corner) const noexcept {
         return {static_cast<double>(x[corner]), static_cast<double>(z[corner])};

@@ -2,6 +2,7 @@
 
 // Memory runs out at every allocation, and then is there again: nothing is torn, and no event is lost.
 
+#include <integration/terrain/changed_ground.hpp>
 #include <tests/integration/all_clients.hpp>
 #include <tests/integration/effects/small_scene.hpp>
 #include <tests/integration/terrain/meshes.hpp>
@@ -192,6 +193,65 @@ TEST_F(OutOfMemory, AddsAllTrianglesOrNone) {
             });
         EXPECT_GE(failures, 3U);
     }
+}
+
+// Ground with refused triangles and free numbers.
+struct Changing : Growing {
+    Changing() {
+        mesh.indices[90] = 12345;
+        terrain.replace(0, mesh.vertices, mesh.indices);
+        terrain.remove(40, 9);
+        mesh.indices[90] = 0;
+        mesh.indices[30] = 12345;
+        for (int i = 0; i < 3; ++i) {
+            grid.update();
+        }
+        static_cast<void>(grid.add(boxAround<float>({4, 1, 4}, {1, 1, 1})));
+    }
+    ChangedGround<float> changed{terrain};
+};
+
+template <class Change>
+std::size_t runOutOfMemoryAt(const Change& change) {
+    Changing whole;
+    change(whole);
+    const auto cornersOf = [](const Changing& changing) {
+        std::vector<Vector3<float>> all;
+        for (std::uint32_t i = 0; i < changing.terrain.size(); ++i) {
+            const auto corners = changing.terrain.corners(i);
+            all.push_back(corners[0].hasNaN() ? Vector3<float>::Zero().eval() : corners[0]);
+        }
+        return all;
+    };
+    return runOutOfMemory(
+        [] { return std::make_unique<Changing>(); }, change,
+        [&](Changing& changing, std::size_t) {
+            const Changing before;
+            if (cornersOf(changing) == cornersOf(before)) {
+                EXPECT_EQ(changing.grid.size(), before.grid.size());
+                EXPECT_TRUE(
+                    std::equal(changing.changed.boxes().begin(), changing.changed.boxes().end(),
+                               before.changed.boxes().begin(), before.changed.boxes().end(),
+                               [](const auto& a, const auto& b) { return isSameBits(a, b); }));
+                change(changing);
+            }
+            EXPECT_EQ(cornersOf(changing), cornersOf(whole));
+            EXPECT_EQ(changing.grid.size(), whole.grid.size());
+            EXPECT_EQ(changing.grid.validate(), "");
+            changing.terrain.clear();
+            EXPECT_EQ(changing.grid.size(), 1U);
+        });
+}
+
+TEST_F(OutOfMemory, ChangesAllTrianglesOrNone) {
+    EXPECT_GE(runOutOfMemoryAt([](Changing& changing) {
+                  const auto indices = std::span(changing.mesh.indices).first(120);
+                  changing.terrain.replace(0, changing.mesh.vertices, indices);
+              }),
+              1U);
+    EXPECT_GE(runOutOfMemoryAt([](Changing& changing) { changing.terrain.remove(60, 5); }), 1U);
+    EXPECT_GE(runOutOfMemoryAt([](Changing& changing) { addTo(changing.terrain, changing.mesh); }),
+              3U);
 }
 
 // --- Simulations ---------------------------------------------------------------------------------

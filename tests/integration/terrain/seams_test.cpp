@@ -3,7 +3,7 @@
 // Where meshes meet that were placed by different transforms: their edges differ by rounding, and the
 // ground has no hole there; but what is a hole stays one, and exact answers stay exact.
 
-#include <tests/integration/terrain/meshes.hpp>
+#include <tests/integration/terrain/chunks.hpp>
 #include <tests/support/terrain_oracle.hpp>
 
 #include <gtest/gtest.h>
@@ -14,82 +14,6 @@
 
 namespace hashphase::test {
 namespace {
-
-/// Chunks side by side around a place, all turned as one, each with its corners relative to its own
-/// middle; computed in Scalar, as an engine does it.
-template <class Scalar>
-class Chunks {
-public:
-    using Point = Vector3<Scalar>;
-    static constexpr int kQuads = 8;  // a side of a chunk, those of which are 1 m
-
-    Chunks(Random& random, const Vector3<double>& place, double tilt)
-        : place_(place.cast<Scalar>()) {
-        const Vector3<double> axis = Vector3<double>::UnitY() + tilt * random.pointIn(-1, 1);
-        turn_ = Eigen::AngleAxis<double>(random.between(-4, 4), axis.normalized())
-                    .toRotationMatrix()
-                    .template cast<Scalar>();
-    }
-
-    /// Where a point of the ground comes to lie, of the chunk around (middleX, middleZ).
-    [[nodiscard]] Point placed(double middleX, double middleZ, double x, double y, double z) const {
-        const Point origin = turn_ * at<Scalar>(middleX, 0, middleZ) + place_;
-        return turn_ * at<Scalar>(x - middleX, y, z - middleZ) + origin;
-    }
-    [[nodiscard]] Point placed(double x, double y, double z) const {
-        return turn_ * at<Scalar>(x, y, z) + place_;
-    }
-
-    /// The chunks from (-side, -side) to (side, side), `height` up, every other one of half the
-    /// resolution, so that corners of one lie on edges of the next.
-    void addTo(Terrain<Scalar>& terrain, int side, double height) const {
-        for (int k = -side; k < side; ++k) {
-            for (int i = -side; i < side; ++i) {
-                const double x = (i + 0.5) * kQuads;
-                const double z = (k + 0.5) * kQuads;
-                const int step = (i + k) % 2 == 0 ? 1 : 2;
-                const auto corner = [&](int a, int b) {
-                    return placed(x, z, i * kQuads + a, height, k * kQuads + b);
-                };
-                std::vector<Point> corners;
-                for (int b = 0; b < kQuads; b += step) {
-                    for (int a = 0; a < kQuads; a += step) {
-                        for (const auto& [da, db] :
-                             {std::pair(0, 0), std::pair(step, 0), std::pair(0, step),
-                              std::pair(step, 0), std::pair(0, step), std::pair(step, step)}) {
-                            corners.push_back(corner(a + da, b + db));
-                        }
-                    }
-                }
-                EXPECT_TRUE(terrain.add(corners).refused.empty());
-            }
-        }
-    }
-
-    /// Points `above` [m] the ground at `height`: on seams along both axes, and where four chunks meet.
-    [[nodiscard]] std::vector<Point> onSeams(Random& random, int side, double height, double above,
-                                             int count) const {
-        std::vector<Point> points;
-        const double most = side * kQuads - 0.1;
-        for (int i = 0; i < count; ++i) {
-            double x =
-                kQuads * (static_cast<int>(random.below(2 * static_cast<std::uint32_t>(side) - 1)) -
-                          side + 1);
-            double z = random.chance(0.1) ? 0 : random.between(-most, most);
-            if (random.chance(0.5)) {
-                std::swap(x, z);
-            }
-            Point point = placed(x, height, z);
-            point[1] += static_cast<Scalar>(above);
-            points.push_back(point);
-        }
-        return points;
-    }
-
-private:
-    Eigen::Matrix<Scalar, 3, 3> turn_;
-    Point place_;
-};
 
 template <class Scalar>
 class TerrainSeams : public testing::Test {
@@ -274,17 +198,55 @@ TYPED_TEST(TerrainSeams, DoNotWidenOrCostMoreByAStrayCorner) {
     EXPECT_LT(stray.terrain.seamTolerance(points[0]), TypeParam(0.02));
 }
 
-TYPED_TEST(TerrainSeams, ForgetTheirToleranceWhenTheGroundIsCleared) {
-    GroundWorld<TypeParam> world({});
-    const Vector3<TypeParam> origin = at<TypeParam>(0, 0, 0);
-    EXPECT_EQ(world.terrain.seamTolerance(origin), 0);
-    const std::vector<Vector3<TypeParam>> corners{at<TypeParam>(0, 0, 0), at<TypeParam>(8, 4, 0),
-                                                  at<TypeParam>(0, 2, 8)};
-    world.terrain.add(corners);
-    EXPECT_EQ(world.terrain.seamTolerance(origin),
-              8 * std::numeric_limits<TypeParam>::epsilon() * 12);
-    world.terrain.clear();
-    EXPECT_EQ(world.terrain.seamTolerance(origin), 0);
+// Chunks come and go in any order, also while the origin is shifted.
+TYPED_TEST(TerrainSeams, HoldBetweenChunksThatAreStreamed) {
+    Random random(0x5eed2407);
+    std::size_t between = 0;
+    for (int turn = 0; turn < 8; ++turn) {
+        const Chunks<TypeParam> chunks(random, random.pointIn(-50, 50), 0.3);
+        Grid<TypeParam> grid;
+        Terrain<TypeParam> terrain(grid);
+        if (turn % 2 == 1) {
+            terrain.setSeamTolerance(static_cast<TypeParam>(8000 * this->kEpsilon));
+        }
+        std::vector<std::uint32_t> firsts = chunks.addTo(terrain, 2, 3);
+        const std::uint32_t size = terrain.size();
+        Vector3<TypeParam> shifted = Vector3<TypeParam>::Zero();
+        for (int round = 0; round < 8; ++round) {
+            std::vector<int> gone;
+            for (int k = 0; k < 16; ++k) {
+                if (random.chance(0.5)) {
+                    const int step = (k % 4 + k / 4) % 2 == 0 ? 1 : 2;
+                    const auto side = static_cast<std::uint32_t>(8 / step);
+                    terrain.remove(firsts[static_cast<std::size_t>(k)], 2 * side * side);
+                    gone.push_back(k);
+                }
+            }
+            grid.update();
+            while (!gone.empty()) {
+                const std::size_t i = random.below(static_cast<std::uint32_t>(gone.size()));
+                const int k = gone[i];
+                gone.erase(gone.begin() + static_cast<std::ptrdiff_t>(i));
+                auto corners = chunks.chunk(k % 4 - 2, k / 4 - 2, 3);
+                for (Vector3<TypeParam>& corner : corners) {
+                    corner -= shifted;
+                }
+                firsts[static_cast<std::size_t>(k)] = terrain.add(corners).first;
+            }
+            EXPECT_LE(terrain.size(), 2 * size);
+            auto points = chunks.onSeams(random, 2, 3, 5, 200);
+            for (Vector3<TypeParam>& point : points) {
+                point -= shifted;
+            }
+            between += this->expectGround(terrain, points, 5, this->kEpsilon * 1e5);
+            ASSERT_FALSE(this->HasFailure());
+            const Vector3<TypeParam> by = at<TypeParam>(32, 0, -64);
+            grid.shiftOrigin(by);
+            terrain.shiftOrigin(by);
+            shifted += by;
+        }
+    }
+    EXPECT_GT(between, 500U);
 }
 
 }  // namespace
