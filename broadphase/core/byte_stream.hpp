@@ -24,6 +24,14 @@ public:
     }
     void write(const void* from, std::size_t count) { std::memcpy(makeRoom(count), from, count); }
 
+    /// Writes without looking for room each time: write(at) is given where to write up to `most` bytes, and returns
+    /// where it has ended.
+    template <class Write>
+    void writeBlock(std::size_t most, const Write& write) {
+        std::byte* const begin = makeRoom(most);
+        size_ -= most - static_cast<std::size_t>(write(begin) - begin);
+    }
+
     void clear() noexcept { size_ = 0; }
     [[nodiscard]] std::span<const std::byte> bytes() const noexcept {
         return std::span(room_).first(size_);
@@ -65,6 +73,9 @@ public:
         left_ = left_.subspan(count);
     }
 
+    /// What is left.
+    [[nodiscard]] std::span<const std::byte> rest() const noexcept { return left_; }
+    void skip(std::size_t count) noexcept { left_ = left_.subspan(count); }
     /// How many bytes are left.
     [[nodiscard]] std::size_t left() const noexcept { return left_.size(); }
     /// Whether more was read than there was.

@@ -45,9 +45,11 @@ btHashedSimplePairCache& childPairsOf(btCollisionAlgorithm& algorithm) {
 /// For Bullet's dispatcher, which makes a manifold for two objects and looks at their shapes. Whose it is, is set
 /// later.
 btPersistentManifold* newManifold(btDispatcher& dispatcher) {
-    static btSphereShape shape(1);
-    static btCollisionObject nobody;
-    nobody.setCollisionShape(&shape);
+    struct Nobody : btCollisionObject {
+        btSphereShape itsShape{1};
+        Nobody() { setCollisionShape(&itsShape); }
+    };
+    static const Nobody nobody;
     return dispatcher.getNewManifold(&nobody, &nobody);
 }
 
@@ -187,6 +189,7 @@ std::string ContactImage::end(btCollisionDispatcher& dispatcher) {
                  << " belong to no pair of the world, its ghosts or its predicted contacts.";
         return sentence.str();
     }
+    std::size_t pointCount = 0;
     for (int i = 0; i < count; ++i) {
         const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
         heads_.push_back({{manifold.getBody0(), manifold.getBody1()},
@@ -194,14 +197,20 @@ std::string ContactImage::end(btCollisionDispatcher& dispatcher) {
                           manifold.getContactProcessingThreshold(),
                           {manifold.m_companionIdA, manifold.m_companionIdB},
                           manifold.getNumContacts()});
+        pointCount += static_cast<std::size_t>(manifold.getNumContacts());
+    }
+    points_.reserve(pointCount);
+    bool haveUserData = false;
+    for (int i = 0; i < count; ++i) {
+        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
         for (int k = 0; k < manifold.getNumContacts(); ++k) {
             points_.push_back(manifold.getContactPoint(k));
-            if (points_.back().m_userPersistentData != nullptr) {
-                return "A contact point has user data (m_userPersistentData), which ends with it.";
-            }
+            haveUserData |= manifold.getContactPoint(k).m_userPersistentData != nullptr;
         }
     }
-    return {};
+    return haveUserData
+               ? "A contact point has user data (m_userPersistentData), which ends with it."
+               : std::string();
 }
 
 // --- Restoring -----------------------------------------------------------------------------------
@@ -436,7 +445,7 @@ void ContactImage::endRestore(btCollisionDispatcher& dispatcher) const {
     HASHPHASE_ASSERT(static_cast<std::size_t>(dispatcher.getNumManifolds()) == heads_.size(),
                      "The dispatcher lists as many manifolds as before.");
     btPersistentManifold** const listed = dispatcher.getInternalManifoldPointer();
-    const btManifoldPoint* point = points_.data();
+    const btManifoldPoint* point = points_.begin();
     for (std::size_t i = 0; i < heads_.size(); ++i) {
         btPersistentManifold& manifold = *manifolds_[i];
         const Head& head = heads_[i];

@@ -8,6 +8,7 @@
 // manifolds that the former had. Those of Bullet keep nothing else, but for those of compound shapes, which keep
 // one for each child, or each pair of children, that is near.
 
+#include <broadphase/core/roomy_list.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
@@ -72,7 +73,7 @@ private:
     // then for each whether it has one, and that.
     std::vector<int> owned_;
     std::vector<Head> heads_;  // in the dispatcher's order
-    std::vector<btManifoldPoint> points_;
+    RoomyList<btManifoldPoint> points_;
     int ownedCount_ = 0;
 
     // Scratch.

@@ -6,55 +6,26 @@
 #include <integration/bullet/detail/bullet_members.hpp>
 #include <integration/bullet/detail/joint_image.hpp>
 
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 
 #include <algorithm>
+#include <cstring>
 #include <sstream>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
-/// Writes members, of vectors no more than there is in them.
-struct SaveMember {
-    ByteWriter& to;
-
-    template <PlainNumber Number>
-    void operator()(const Number& number) const {
-        to.write(number);
-    }
-    void operator()(const btVector3& vector) const {
-        to.write(vector.m_floats, 3 * sizeof(btScalar));
-    }
-    void operator()(const btQuaternion& rotation) const {
-        for (int i = 0; i < 4; ++i) {
-            to.write(rotation[i]);
-        }
-    }
-    void operator()(const btMatrix3x3& matrix) const {
-        for (int row = 0; row < 3; ++row) {
-            (*this)(matrix[row]);
-        }
-    }
-    void operator()(const btTransform& place) const {
-        (*this)(place.getBasis());
-        (*this)(place.getOrigin());
-    }
-};
-
-struct RestoreMember {
-    ByteReader& from;
+/// Calls copy(member, bytes) for a member of a kind, or for its parts: of vectors no more than there is in them.
+template <class Copy>
+struct ByParts {
+    Copy copy;
 
     template <PlainNumber Number>
     void operator()(Number& number) const {
-        number = from.read<Number>();
+        copy(&number, sizeof(number));
     }
-    void operator()(btVector3& vector) const { from.read(vector.m_floats, 3 * sizeof(btScalar)); }
-    void operator()(btQuaternion& rotation) const {
-        for (int i = 0; i < 4; ++i) {
-            rotation[i] = from.read<btScalar>();
-        }
-    }
+    void operator()(btVector3& vector) const { copy(vector.m_floats, 3 * sizeof(btScalar)); }
+    void operator()(btQuaternion& rotation) const { copy(&rotation[0], 4 * sizeof(btScalar)); }
     void operator()(btMatrix3x3& matrix) const {
         for (int row = 0; row < 3; ++row) {
             (*this)(matrix[row]);
@@ -92,20 +63,38 @@ void forEachMember(btCollisionObject& object, const Visit& visit) {
     }
 }
 
-btCollisionDispatcher& dispatcherOf(btDiscreteDynamicsWorld& world) {
-    return static_cast<btCollisionDispatcher&>(*world.getDispatcher());
+template <class Visit>
+void forEachMember(btKinematicCharacterController& character, const Visit& visit) {
+    CharacterMembers::forEach(character, visit);
 }
 
-int revisionOf(const btCollisionShape* shape) {
-    if (shape == nullptr || !shape->isCompound()) {
-        return 0;
-    }
-    const auto& compound = static_cast<const btCompoundShape&>(*shape);
-    int revision = compound.getUpdateRevision();
-    for (int i = 0; i < compound.getNumChildShapes(); ++i) {
-        revision += revisionOf(compound.getChildShape(i));
-    }
-    return revision;
+// More than the members of any object or world have together.
+constexpr std::size_t kMostBytes = 4096;
+
+// Writes the members of an object, a world or a character.
+void saveMembers(auto& owner, ByteWriter& to) {
+    to.writeBlock(kMostBytes, [&](std::byte* at) {
+        const auto save = [&at](const void* member, std::size_t count) {
+            std::memcpy(at, member, count);
+            at += count;
+        };
+        forEachMember(owner, ByParts<decltype(save)>{save});
+        return at;
+    });
+}
+
+void restoreMembers(auto& owner, ByteReader& from) {
+    const std::byte* at = from.rest().data();
+    const auto restore = [&at](void* member, std::size_t count) {
+        std::memcpy(member, at, count);
+        at += count;
+    };
+    forEachMember(owner, ByParts<decltype(restore)>{restore});
+    from.skip(static_cast<std::size_t>(at - from.rest().data()));
+}
+
+btCollisionDispatcher& dispatcherOf(btDiscreteDynamicsWorld& world) {
+    return static_cast<btCollisionDispatcher&>(*world.getDispatcher());
 }
 
 template <class Item>
@@ -124,67 +113,13 @@ void restorePointers(btAlignedObjectArray<Item*>& to, int count, const void* con
     }
 }
 
-const char* nameOfType(int type) {
-    switch (type) {
-        case btCollisionObject::CO_SOFT_BODY:
-            return "a soft body";
-        case btCollisionObject::CO_FEATHERSTONE_LINK:
-            return "a link of a multibody";
-        default:
-            return "of a type that Bullet's rigid worlds do not have";
-    }
-}
-
-std::uint64_t keyOf(const void* pointer) {
-    return reinterpret_cast<std::uintptr_t>(pointer);
+/// Null where the object is no ghost that keeps pairs.
+btPairCachingGhostObject* cachingGhost(btCollisionObject* object) {
+    btGhostObject* const ghost = btGhostObject::upcast(object);
+    return ghost != nullptr ? asPairCachingGhost(ghost) : nullptr;
 }
 
 }  // namespace
-
-std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
-                                const SpatialHashBroadphase& broadphase) {
-    if (world.getBroadphase() != &broadphase) {
-        return "The broadphase is not that of the world.";
-    }
-    std::string fault = BroadphaseImage::faultOf(broadphase);
-    if (!fault.empty()) {
-        return fault;
-    }
-    if (asSequentialImpulseSolver(world.getConstraintSolver()) == nullptr) {
-        return "The world's solver is not a btSequentialImpulseConstraintSolver.";
-    }
-    if (hasMultiBodies(world)) {
-        return "The world has multibodies.";
-    }
-    std::ostringstream sentence;
-    const btCollisionObjectArray& objects = world.getCollisionObjectArray();
-    for (int i = 0; i < objects.size(); ++i) {
-        constexpr int known = btCollisionObject::CO_COLLISION_OBJECT |
-                              btCollisionObject::CO_RIGID_BODY | btCollisionObject::CO_GHOST_OBJECT;
-        if ((objects[i]->getInternalType() & ~known) != 0) {
-            sentence << "Object " << i << " of the world is "
-                     << nameOfType(objects[i]->getInternalType()) << ".";
-            return sentence.str();
-        }
-    }
-    for (int i = 0; i < world.getNumConstraints(); ++i) {
-        if (!isKnown(*world.getConstraint(i))) {
-            sentence << "Joint " << i << " of the world is of type "
-                     << world.getConstraint(i)->getConstraintType() << ", which is not known.";
-            return sentence.str();
-        }
-    }
-    const auto& actions = WorldMembers::actions(world);
-    for (int i = 0; i < actions.size(); ++i) {
-        if (asCharacter(actions[i]) == nullptr) {
-            sentence << "Action " << i
-                     << " of the world is not a btKinematicCharacterController; vehicles are such "
-                        "actions.";
-            return sentence.str();
-        }
-    }
-    return {};
-}
 
 // --- Saving --------------------------------------------------------------------------------------
 
@@ -198,8 +133,7 @@ std::string WorldImage::save(btDiscreteDynamicsWorld& world,
     fields.clear();
     ghosts.begin();
     contacts.begin();
-    const SaveMember saveMember{fields};
-    forEachMember(world, saveMember);
+    saveMembers(world, fields);
     fields.write(&world.getSolverInfo(), sizeof(btContactSolverInfo));
     fields.write(asSequentialImpulseSolver(world.getConstraintSolver())->getRandSeed());
 
@@ -220,7 +154,7 @@ std::string WorldImage::save(btDiscreteDynamicsWorld& world,
                           proxy->m_uniqueId,
                           SpatialHashBroadphase::idOf(proxy).index,
                           object.getInternalType(),
-                          revisionOf(object.getCollisionShape()),
+                          shapeRevisionOf(object.getCollisionShape()),
                           savePointers(ObjectMembers::ignored(object), pointers),
                           0,
                           0,
@@ -230,11 +164,11 @@ std::string WorldImage::save(btDiscreteDynamicsWorld& world,
         }
         if (btGhostObject* const ghost = btGhostObject::upcast(&object)) {
             saved.overlappingCount = savePointers(GhostMembers::overlapping(*ghost), pointers);
-            if (btPairCachingGhostObject* const caching = asPairCachingGhost(ghost)) {
+            if (btPairCachingGhostObject* const caching = cachingGhost(ghost)) {
                 saved.ghostPairCount = ghosts.save(*caching, contacts);
             }
         }
-        forEachMember(object, saveMember);
+        saveMembers(object, fields);
         objects.push_back(saved);
     }
     contacts.save(WorldMembers::predicted(world));
@@ -248,114 +182,15 @@ std::string WorldImage::save(btDiscreteDynamicsWorld& world,
             {&joint, joint.getConstraintType(), &joint.getRigidBodyA(), &joint.getRigidBodyB()});
         saveJoint(joint, fields);
     }
-    const auto& all_actions = WorldMembers::actions(world);
-    for (int i = 0; i < all_actions.size(); ++i) {
-        actions.push_back(all_actions[i]);
-        CharacterMembers::forEach(*asCharacter(all_actions[i]), saveMember);
+    const auto& allActions = WorldMembers::actions(world);
+    for (int i = 0; i < allActions.size(); ++i) {
+        actions.push_back(allActions[i]);
+        saveMembers(*asCharacter(allActions[i]), fields);
     }
     return contacts.end(dispatcherOf(world));
 }
 
 // --- Restoring -----------------------------------------------------------------------------------
-
-std::string WorldImage::find(btDiscreteDynamicsWorld& world, const Returned& returned) const {
-    std::ostringstream sentence;
-    addedObjects.clear();
-    addedJoints.clear();
-    addedActions.clear();
-    const auto isReturned = [](const auto& list, const void* item) {
-        return std::find(list.begin(), list.end(), item) != list.end();
-    };
-    // Objects: those of now by their addresses.
-    present.clear();
-    const btCollisionObjectArray& all = world.getCollisionObjectArray();
-    for (int i = 0; i < all.size(); ++i) {
-        present.findOrInsert(keyOf(all[i]));
-    }
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-        const SavedObject& saved = objects[i];
-        const bool isThere = present.contains(keyOf(saved.object));
-        if (!isThere && !isReturned(returned.objects, saved.object)) {
-            sentence << "Object " << i << " (unique id " << saved.uniqueId
-                     << ") was removed from the world since. Hand it over as Returned::objects.";
-            return sentence.str();
-        }
-        if (!isThere && saved.object->getBroadphaseHandle() != nullptr) {
-            sentence << "Object " << i << " (unique id " << saved.uniqueId
-                     << "), which is handed over, is in another world.";
-            return sentence.str();
-        }
-        const bool isSame =
-            saved.object->getInternalType() == saved.type &&
-            (!isThere || saved.object->getBroadphaseHandle()->m_uniqueId == saved.uniqueId ||
-             saved.object->getCollisionShape() == saved.shape);
-        if (!isSame) {
-            sentence << "Object " << i << " (unique id " << saved.uniqueId
-                     << ") was removed from the world since, and another one is at its address.";
-            return sentence.str();
-        }
-        if (revisionOf(saved.shape) != saved.shapeRevision) {
-            sentence << "The compound shape of object " << i << " (unique id " << saved.uniqueId
-                     << ") has changed since.";
-            return sentence.str();
-        }
-    }
-    present.clear();
-    for (const SavedObject& saved : objects) {
-        present.findOrInsert(keyOf(saved.object));
-    }
-    for (int i = 0; i < all.size(); ++i) {
-        if (!present.contains(keyOf(all[i]))) {
-            addedObjects.push_back(all[i]);
-        }
-    }
-    // Joints.
-    const auto& allJoints = WorldMembers::joints(world);
-    present.clear();
-    for (int i = 0; i < allJoints.size(); ++i) {
-        present.findOrInsert(keyOf(allJoints[i]));
-    }
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-        const SavedJoint& saved = joints[i];
-        if (!present.contains(keyOf(saved.joint)) && !isReturned(returned.joints, saved.joint)) {
-            sentence << "Joint " << i
-                     << " was removed from the world since. Hand it over as Returned::joints.";
-            return sentence.str();
-        }
-        if (saved.joint->getConstraintType() != saved.type ||
-            &saved.joint->getRigidBodyA() != saved.a || &saved.joint->getRigidBodyB() != saved.b) {
-            sentence << "Joint " << i
-                     << " was removed from the world since, and another one is at its address.";
-            return sentence.str();
-        }
-    }
-    present.clear();
-    for (const SavedJoint& saved : joints) {
-        present.findOrInsert(keyOf(saved.joint));
-    }
-    for (int i = 0; i < allJoints.size(); ++i) {
-        if (!present.contains(keyOf(allJoints[i]))) {
-            addedJoints.push_back(allJoints[i]);
-        }
-    }
-    // Actions.
-    const auto& allActions = WorldMembers::actions(world);
-    for (std::size_t i = 0; i < actions.size(); ++i) {
-        const bool isThere = allActions.findLinearSearch(actions[i]) < allActions.size() ||
-                             isReturned(returned.actions, actions[i]);
-        if (!isThere || asCharacter(actions[i]) == nullptr) {
-            sentence << "Action " << i
-                     << " was removed from the world since. Hand it over as Returned::actions.";
-            return sentence.str();
-        }
-    }
-    for (int i = 0; i < allActions.size(); ++i) {
-        if (std::find(actions.begin(), actions.end(), allActions[i]) == actions.end()) {
-            addedActions.push_back(allActions[i]);
-        }
-    }
-    return {};
-}
 
 void WorldImage::makeRoom(btDiscreteDynamicsWorld& world,
                           SpatialHashBroadphase& ofBroadphase) const {
@@ -364,13 +199,10 @@ void WorldImage::makeRoom(btDiscreteDynamicsWorld& world,
     std::size_t ghostPairs = 0;
     const btCollisionObjectArray& all = world.getCollisionObjectArray();
     for (int i = 0; i < all.size(); ++i) {
-        btGhostObject* const ghost = btGhostObject::upcast(all[i]);
-        btPairCachingGhostObject* const caching =
-            ghost != nullptr ? asPairCachingGhost(ghost) : nullptr;
-        ghostPairs += caching != nullptr
-                          ? static_cast<std::size_t>(
-                                caching->getOverlappingPairCache()->getNumOverlappingPairs())
-                          : 0;
+        btPairCachingGhostObject* const caching = cachingGhost(all[i]);
+        const int count =
+            caching != nullptr ? caching->getOverlappingPairCache()->getNumOverlappingPairs() : 0;
+        ghostPairs += static_cast<std::size_t>(count);
     }
     ghosts.makeRoom(ghostPairs);
 }
@@ -394,9 +226,7 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     // Algorithms follow shapes: those of shapes that have changed are of no use.
     ghosts.beginRestore();
     for (int i = 0; i < all.size(); ++i) {
-        btGhostObject* const ghost = btGhostObject::upcast(all[i]);
-        btPairCachingGhostObject* const caching =
-            ghost != nullptr ? asPairCachingGhost(ghost) : nullptr;
+        btPairCachingGhostObject* const caching = cachingGhost(all[i]);
         if (caching != nullptr) {
             ghosts.detach(*caching);
         }
@@ -425,9 +255,7 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
         BroadphaseImage::retired(ofBroadphase, i) = contacts.restoreRetired(dispatcher);
     }
     for (const SavedObject& saved : objects) {
-        btGhostObject* const ghost = btGhostObject::upcast(saved.object);
-        btPairCachingGhostObject* const caching =
-            ghost != nullptr ? asPairCachingGhost(ghost) : nullptr;
+        btPairCachingGhostObject* const caching = cachingGhost(saved.object);
         if (caching != nullptr) {
             ghosts.restore(*caching, saved.ghostPairCount, ofBroadphase, contacts, dispatcher);
         }
@@ -437,15 +265,14 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     contacts.endRestore(dispatcher);
 
     ByteReader reader(fields.bytes());
-    const RestoreMember restoreMember{reader};
-    forEachMember(world, restoreMember);
+    restoreMembers(world, reader);
     reader.read(&world.getSolverInfo(), sizeof(btContactSolverInfo));
     asSequentialImpulseSolver(world.getConstraintSolver())
         ->setRandSeed(reader.read<unsigned long>());
     const void* const* pointer = pointers.data();
     for (const SavedObject& saved : objects) {
         btCollisionObject& object = *saved.object;
-        forEachMember(object, restoreMember);
+        restoreMembers(object, reader);
         restorePointers(ObjectMembers::ignored(object), saved.ignoredCount, pointer);
         if (btRigidBody* const body = btRigidBody::upcast(&object)) {
             restorePointers(BodyMembers::joints(*body), saved.jointCount, pointer);
@@ -469,7 +296,7 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     allActions.resizeNoInitialize(0);
     for (btActionInterface* action : actions) {
         allActions.push_back(action);
-        CharacterMembers::forEach(*asCharacter(action), restoreMember);
+        restoreMembers(*asCharacter(action), reader);
     }
 }
 

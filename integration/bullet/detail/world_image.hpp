@@ -34,6 +34,9 @@ struct SavedObject {
     int ghostPairCount;
 };
 
+/// A number that is another one after a change of a compound shape; 0 of any other shape, or of none.
+[[nodiscard]] int shapeRevisionOf(const btCollisionShape* shape);
+
 struct SavedJoint {
     btTypedConstraint* joint;
     int type;
@@ -78,8 +81,23 @@ struct WorldImage {
                present.memoryBytes();
     }
 
-    // Scratch of a restore(): what is to be taken out.
+private:
+    template <class Saved, class Item, class AddressOf>
+    void compare(const std::vector<Saved>& saved, const btAlignedObjectArray<Item*>& all,
+                 const AddressOf& addressOf, std::vector<Item*>& added) const;
+    [[nodiscard]] bool isPresent(const void* pointer) const {
+        return areAllPresent || present.contains(reinterpret_cast<std::uintptr_t>(pointer));
+    }
+    [[nodiscard]] std::string findObjects(btDiscreteDynamicsWorld& world,
+                                          const Returned& returned) const;
+    [[nodiscard]] std::string findJoints(btDiscreteDynamicsWorld& world,
+                                         const Returned& returned) const;
+    [[nodiscard]] std::string findActions(btDiscreteDynamicsWorld& world,
+                                          const Returned& returned) const;
+
+    // Scratch of find(): the addresses of what is there; and what is to be taken out.
     mutable FlatSet present;
+    mutable bool areAllPresent = false;
     mutable std::vector<btCollisionObject*> addedObjects;
     mutable std::vector<btTypedConstraint*> addedJoints;
     mutable std::vector<btActionInterface*> addedActions;

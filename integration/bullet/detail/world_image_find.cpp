@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Zlib
+
+// What of a world cannot be saved, and what of a saved one is missing.
+
+#include <integration/bullet/detail/world_image.hpp>
+
+#include <integration/bullet/detail/bullet_classes.hpp>
+#include <integration/bullet/detail/bullet_members.hpp>
+#include <integration/bullet/detail/joint_image.hpp>
+
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+const char* nameOfType(int type) {
+    switch (type) {
+        case btCollisionObject::CO_SOFT_BODY:
+            return "a soft body";
+        case btCollisionObject::CO_FEATHERSTONE_LINK:
+            return "a link of a multibody";
+        default:
+            return "of a type that Bullet's rigid worlds do not have";
+    }
+}
+
+std::uint64_t keyOf(const void* pointer) {
+    return reinterpret_cast<std::uintptr_t>(pointer);
+}
+
+template <class Item>
+bool isAmong(std::span<Item* const> items, const void* item) {
+    return std::find(items.begin(), items.end(), item) != items.end();
+}
+
+}  // namespace
+
+int shapeRevisionOf(const btCollisionShape* shape) {
+    if (shape == nullptr || !shape->isCompound()) {
+        return 0;
+    }
+    const auto& compound = static_cast<const btCompoundShape&>(*shape);
+    int revision = compound.getUpdateRevision();
+    for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+        revision += shapeRevisionOf(compound.getChildShape(i));
+    }
+    return revision;
+}
+
+std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
+                                const SpatialHashBroadphase& broadphase) {
+    if (world.getBroadphase() != &broadphase) {
+        return "The broadphase is not that of the world.";
+    }
+    std::string fault = BroadphaseImage::faultOf(broadphase);
+    if (!fault.empty()) {
+        return fault;
+    }
+    if (asSequentialImpulseSolver(world.getConstraintSolver()) == nullptr) {
+        return "The world's solver is not a btSequentialImpulseConstraintSolver.";
+    }
+    if (hasMultiBodies(world)) {
+        return "The world has multibodies.";
+    }
+    std::ostringstream sentence;
+    const btCollisionObjectArray& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        constexpr int known = btCollisionObject::CO_COLLISION_OBJECT |
+                              btCollisionObject::CO_RIGID_BODY | btCollisionObject::CO_GHOST_OBJECT;
+        if ((objects[i]->getInternalType() & ~known) != 0) {
+            sentence << "Object " << i << " of the world is "
+                     << nameOfType(objects[i]->getInternalType()) << ".";
+            return sentence.str();
+        }
+    }
+    for (int i = 0; i < world.getNumConstraints(); ++i) {
+        if (!isKnown(*world.getConstraint(i))) {
+            sentence << "Joint " << i << " of the world is of type "
+                     << world.getConstraint(i)->getConstraintType() << ", which is not known.";
+            return sentence.str();
+        }
+    }
+    const auto& actions = WorldMembers::actions(world);
+    for (int i = 0; i < actions.size(); ++i) {
+        if (asCharacter(actions[i]) == nullptr) {
+            sentence << "Action " << i
+                     << " of the world is not a btKinematicCharacterController; vehicles are such "
+                        "actions.";
+            return sentence.str();
+        }
+    }
+    return {};
+}
+
+// Those of the world whose addresses are not among the saved ones are listed as added; of the saved ones, `present`
+// has those that are there.
+template <class Saved, class Item, class AddressOf>
+void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectArray<Item*>& all,
+                         const AddressOf& addressOf, std::vector<Item*>& added) const {
+    added.clear();
+    present.clear();
+    bool areSame = saved.size() == static_cast<std::size_t>(all.size());
+    for (int i = 0; areSame && i < all.size(); ++i) {
+        areSame = addressOf(saved[static_cast<std::size_t>(i)]) == all[i];
+    }
+    areAllPresent = areSame;
+    if (areSame) {
+        return;
+    }
+    for (const Saved& each : saved) {
+        present.findOrInsert(keyOf(addressOf(each)));
+    }
+    for (int i = 0; i < all.size(); ++i) {
+        if (!present.contains(keyOf(all[i]))) {
+            added.push_back(all[i]);
+        }
+    }
+    present.clear();
+    for (int i = 0; i < all.size(); ++i) {
+        present.findOrInsert(keyOf(all[i]));
+    }
+}
+
+std::string WorldImage::find(btDiscreteDynamicsWorld& world, const Returned& returned) const {
+    std::string fault = findObjects(world, returned);
+    if (fault.empty()) {
+        fault = findJoints(world, returned);
+    }
+    return fault.empty() ? findActions(world, returned) : fault;
+}
+
+std::string WorldImage::findObjects(btDiscreteDynamicsWorld& world,
+                                    const Returned& returned) const {
+    compare(
+        objects, world.getCollisionObjectArray(),
+        [](const SavedObject& saved) { return saved.object; }, addedObjects);
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const SavedObject& saved = objects[i];
+        const bool isThere = isPresent(saved.object);
+        const auto sentence = [&](const char* what) {
+            return "Object " + std::to_string(i) + " (unique id " + std::to_string(saved.uniqueId) +
+                   ") " + what;
+        };
+        if (!isThere && !isAmong(returned.objects, saved.object)) {
+            return sentence("was removed from the world since. Hand it over as Returned::objects.");
+        }
+        const btBroadphaseProxy* const proxy = saved.object->getBroadphaseHandle();
+        if (!isThere && proxy != nullptr) {
+            return sentence("is handed over, but it is in another world.");
+        }
+        if (saved.object->getInternalType() != saved.type ||
+            (isThere && proxy->m_uniqueId != saved.uniqueId &&
+             saved.object->getCollisionShape() != saved.shape)) {
+            return sentence("was removed from the world since, and another is at its address.");
+        }
+        if (shapeRevisionOf(saved.shape) != saved.shapeRevision) {
+            return sentence("has a compound shape that has changed since.");
+        }
+    }
+    return {};
+}
+
+std::string WorldImage::findJoints(btDiscreteDynamicsWorld& world, const Returned& returned) const {
+    compare(
+        joints, WorldMembers::joints(world), [](const SavedJoint& saved) { return saved.joint; },
+        addedJoints);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        const SavedJoint& saved = joints[i];
+        const auto sentence = [&](const char* what) {
+            return "Joint " + std::to_string(i) + " was removed from the world since" + what;
+        };
+        if (!isPresent(saved.joint) && !isAmong(returned.joints, saved.joint)) {
+            return sentence(". Hand it over as Returned::joints.");
+        }
+        if (saved.joint->getConstraintType() != saved.type ||
+            &saved.joint->getRigidBodyA() != saved.a || &saved.joint->getRigidBodyB() != saved.b) {
+            return sentence(", and another is at its address.");
+        }
+    }
+    return {};
+}
+
+std::string WorldImage::findActions(btDiscreteDynamicsWorld& world,
+                                    const Returned& returned) const {
+    compare(
+        actions, WorldMembers::actions(world), [](btActionInterface* action) { return action; },
+        addedActions);
+    for (std::size_t i = 0; i < actions.size(); ++i) {
+        if (!isPresent(actions[i]) && !isAmong(returned.actions, actions[i])) {
+            return "Action " + std::to_string(i) +
+                   " was removed from the world since. Hand it over as Returned::actions.";
+        }
+        if (asCharacter(actions[i]) == nullptr) {
+            return "Action " + std::to_string(i) +
+                   " was removed from the world since, and another is at its address.";
+        }
+    }
+    return {};
+}
+
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE
