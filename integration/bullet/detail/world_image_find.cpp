@@ -9,6 +9,7 @@
 #include <integration/bullet/detail/joint_image.hpp>
 
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 #include <algorithm>
 #include <sstream>
