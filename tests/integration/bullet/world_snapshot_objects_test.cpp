@@ -1,0 +1,449 @@
+// SPDX-License-Identifier: Zlib
+
+// Objects, joints and characters that come and go between a snapshot and the way back to it; and what is refused.
+
+#include <integration/bullet/world_snapshot.hpp>
+
+#include <tests/integration/bullet/snapshot_worlds.hpp>
+#include <tests/support/count_allocations.hpp>
+#include <tests/support/out_of_memory.hpp>
+
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <BulletDynamics/Character/btKinematicCharacterController.h>
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Vehicle/btRaycastVehicle.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+/// A floor, and bodies that may be in the world or not.
+struct PoolWorld {
+    explicit PoolWorld(PairOrder order = PairOrder::arrival, std::size_t count = 40)
+        : cache(order) {
+        world.addRigidBody(&floor);
+        for (std::size_t i = 0; i < count; ++i) {
+            btVector3 inertia(0, 0, 0);
+            shapeOf(i).calculateLocalInertia(1, inertia);
+            pool.push_back(std::make_unique<btRigidBody>(1, nullptr, &shapeOf(i), inertia));
+            pool.back()->setUserIndex(static_cast<int>(i));
+        }
+    }
+    ~PoolWorld() {
+        while (world.getNumConstraints() > 0) {
+            world.removeConstraint(world.getConstraint(0));
+        }
+        while (world.getNumCollisionObjects() > 0) {
+            world.removeCollisionObject(world.getCollisionObjectArray()[0]);
+        }
+    }
+    PoolWorld(const PoolWorld&) = delete;
+    PoolWorld& operator=(const PoolWorld&) = delete;
+
+    btCollisionShape& shapeOf(std::size_t i) {
+        return i % 3 == 0   ? static_cast<btCollisionShape&>(ball)
+               : i % 3 == 1 ? static_cast<btCollisionShape&>(box)
+                            : pill;
+    }
+    void add(std::size_t i, const btVector3& at) {
+        btRigidBody& body = *pool[i];
+        body.setLinearVelocity(btVector3(0, 0, 0));
+        body.setAngularVelocity(btVector3(0, 0, 0));
+        body.setCenterOfMassTransform(btTransform(btQuaternion(0, 0, 0, 1), at));
+        body.clearForces();
+        body.forceActivationState(ACTIVE_TAG);
+        body.setDeactivationTime(0);
+        world.addRigidBody(&body);
+    }
+    [[nodiscard]] bool isIn(std::size_t i) const { return pool[i]->isInWorld(); }
+
+    /// A frame in which bodies come and go, by the frame's number alone.
+    std::uint64_t play(std::uint64_t frame) {
+        Random random(frame);
+        for (std::size_t i = 0; i < pool.size(); ++i) {
+            if (!random.chance(0.06)) {
+                continue;
+            }
+            const auto x = static_cast<btScalar>(random.between(-2, 2));
+            const auto y = static_cast<btScalar>(random.between(1, 4));
+            if (!isIn(i)) {
+                add(i, btVector3(x, y, x - y));
+            } else if (random.chance(0.5)) {
+                world.removeRigidBody(pool[i].get());
+            } else {
+                world.refreshBroadphaseProxy(pool[i].get());
+            }
+        }
+        world.stepSimulation(btScalar(1) / 60, 0);
+        return wholeState(world);
+    }
+    std::string save(WorldSnapshot& snapshot) { return snapshot.save(world, broadphase); }
+    std::string restore(const WorldSnapshot& snapshot) {
+        std::vector<btCollisionObject*> out;
+        for (const auto& body : pool) {
+            if (!body->isInWorld()) {
+                out.push_back(body.get());
+            }
+        }
+        return snapshot.restore(world, broadphase, {.objects = out});
+    }
+
+    btBoxShape ground{btVector3(10, 1, 10)};
+    btSphereShape ball{btScalar(0.5)};
+    btBoxShape box{btVector3(0.4F, 0.5F, 0.6F)};
+    btCapsuleShape pill{btScalar(0.3), btScalar(0.5)};
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    PairCache cache;
+    SpatialHashBroadphase broadphase{&cache};
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+    btRigidBody floor{0, nullptr, &ground};
+    std::vector<std::unique_ptr<btRigidBody>> pool;
+};
+
+class Churn : public testing::TestWithParam<PairOrder> {};
+
+TEST_P(Churn, IsTakenBackEightFramesInEachFrameAsIfItHadNotBeen) {
+    constexpr std::uint64_t kBack = 8;
+    PoolWorld straight(GetParam());
+    PoolWorld rolled(GetParam());
+    std::array<WorldSnapshot, kBack> ring;
+    for (std::uint64_t frame = 0; frame < 400; ++frame) {
+        if (frame >= kBack) {
+            ASSERT_EQ(rolled.restore(ring[frame % kBack]), "");
+            for (std::uint64_t past = frame - kBack; past < frame; ++past) {
+                ASSERT_EQ(rolled.save(ring[past % kBack]), "");
+                rolled.play(past);
+            }
+        }
+        ASSERT_EQ(rolled.save(ring[frame % kBack]), "");
+        ASSERT_EQ(rolled.play(frame), straight.play(frame)) << "frame " << frame;
+    }
+}
+
+TEST_P(Churn, IsTakenBackFromAnywhereToAnywhere) {
+    PoolWorld world(GetParam());
+    std::vector<WorldSnapshot> snapshots(200);
+    std::vector<std::uint64_t> states;
+    for (std::uint64_t frame = 0; frame < snapshots.size(); ++frame) {
+        ASSERT_EQ(world.save(snapshots[frame]), "");
+        states.push_back(world.play(frame));
+    }
+    Random random(5);
+    for (int round = 0; round < 60; ++round) {
+        const std::uint64_t from = random.below(180);
+        ASSERT_EQ(world.restore(snapshots[from]), "");
+        for (std::uint64_t frame = from; frame < from + 15; ++frame) {
+            ASSERT_EQ(world.play(frame), states[frame]) << "frame " << frame << " from " << from;
+        }
+        for (std::uint64_t noise = 1000; noise < 1000 + random.below(10); ++noise) {
+            world.play(noise);
+        }
+    }
+}
+
+// In canonical order, algorithms of pairs that are gone wait to be freed.
+TEST_P(Churn, IsSavedBetweenRemovalAndStep) {
+    PoolWorld straight(GetParam());
+    PoolWorld saved(GetParam());
+    WorldSnapshot snapshot;
+    const auto remove = [](PoolWorld& world) {
+        for (std::size_t i = 0; i < world.pool.size(); i += 2) {
+            if (world.isIn(i)) {
+                world.world.removeRigidBody(world.pool[i].get());
+            }
+        }
+    };
+    for (PoolWorld* world : {&straight, &saved}) {
+        for (std::uint64_t frame = 0; frame < 60; ++frame) {
+            world->play(frame);
+        }
+        remove(*world);
+    }
+    ASSERT_EQ(saved.save(snapshot), "");
+    for (std::uint64_t frame = 900; frame < 910; ++frame) {
+        saved.play(frame);
+    }
+    ASSERT_EQ(saved.restore(snapshot), "");
+    for (std::uint64_t frame = 60; frame < 90; ++frame) {
+        ASSERT_EQ(saved.play(frame), straight.play(frame)) << "frame " << frame;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Orders, Churn, testing::Values(PairOrder::arrival, PairOrder::canonical),
+                         [](const auto& order) {
+                             return order.param == PairOrder::arrival ? "Arrival" : "Canonical";
+                         });
+
+/// A world with a few bodies in it, after some steps.
+struct FewBodies : PoolWorld {
+    FewBodies() {
+        for (std::size_t i = 0; i < 6; ++i) {
+            add(i, btVector3(0, static_cast<btScalar>(i) + 1, 0));
+        }
+        for (int i = 0; i < 40; ++i) {
+            world.stepSimulation(btScalar(1) / 60, 0);
+        }
+    }
+    std::string restoreWithout(const WorldSnapshot& snapshot, const Returned& returned = {}) {
+        return snapshot.restore(world, broadphase, returned);
+    }
+};
+
+TEST(WorldSnapshot, TakesOutWhatWasAddedSince) {
+    FewBodies few;
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    const std::uint64_t state = wholeState(few.world);
+    few.add(10, btVector3(0, 2, 0));
+    btPoint2PointConstraint joint(*few.pool[0], btVector3(0, 1, 0));
+    few.world.addConstraint(&joint);
+    few.world.stepSimulation(btScalar(1) / 60, 0);
+    ASSERT_EQ(few.restoreWithout(snapshot), "");
+    EXPECT_EQ(wholeState(few.world), state);
+    EXPECT_FALSE(few.isIn(10));
+    EXPECT_EQ(few.world.getNumConstraints(), 0);
+    EXPECT_EQ(few.world.getNumCollisionObjects(), 7);
+}
+
+TEST(WorldSnapshot, NamesWhatWasRemovedSinceAndChangesNothing) {
+    FewBodies few;
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    const std::uint64_t state = wholeState(few.world);
+    few.world.removeRigidBody(few.pool[3].get());
+    few.world.stepSimulation(btScalar(1) / 60, 0);
+    const std::uint64_t without = wholeState(few.world);
+    EXPECT_EQ(few.restoreWithout(snapshot),
+              "Object 4 (unique id 5) was removed from the world since. Hand it over as "
+              "Returned::objects.");
+    EXPECT_EQ(wholeState(few.world), without);
+    btCollisionObject* const removed = few.pool[3].get();
+    EXPECT_EQ(few.restoreWithout(snapshot, {.objects = {&removed, 1}}), "");
+    EXPECT_EQ(wholeState(few.world), state);
+    EXPECT_TRUE(few.isIn(3));
+}
+
+TEST(WorldSnapshot, NamesAJointThatWasRemovedSince) {
+    FewBodies few;
+    btHingeConstraint joint(*few.pool[0], *few.pool[1], btVector3(0, 1, 0), btVector3(0, -1, 0),
+                            btVector3(0, 0, 1), btVector3(0, 0, 1));
+    few.world.addConstraint(&joint, true);
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    few.world.removeConstraint(&joint);
+    joint.enableAngularMotor(true, 5, 1);
+    EXPECT_EQ(few.restoreWithout(snapshot),
+              "Joint 0 was removed from the world since. Hand it over as Returned::joints.");
+    btTypedConstraint* const removed = &joint;
+    EXPECT_EQ(few.restoreWithout(snapshot, {.joints = {&removed, 1}}), "");
+    EXPECT_EQ(few.world.getNumConstraints(), 1);
+    EXPECT_FALSE(joint.getEnableAngularMotor());
+    EXPECT_EQ(few.pool[0]->getNumConstraintRefs(), 1);
+    EXPECT_FALSE(few.pool[0]->checkCollideWith(few.pool[1].get()));
+}
+
+TEST(WorldSnapshot, TellsAnotherObjectAtTheSameAddress) {
+    FewBodies few;
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    btRigidBody& body = *few.pool[3];
+    few.world.removeRigidBody(&body);
+    body.setCollisionShape(&few.ball);  // as an object that has come to lie there
+    few.world.addRigidBody(&body);
+    ASSERT_NE(&few.ball, &few.shapeOf(4));
+    few.world.removeRigidBody(few.pool[4].get());
+    few.pool[4]->setCollisionShape(&few.ball);
+    few.world.addRigidBody(few.pool[4].get());
+    EXPECT_EQ(few.restoreWithout(snapshot),
+              "Object 5 (unique id 6) was removed from the world since, and another is at its "
+              "address.");
+}
+
+TEST(WorldSnapshot, GivesAnObjectItsShapeBack) {
+    FewBodies few;
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    const std::uint64_t state = wholeState(few.world);
+    few.pool[1]->setCollisionShape(&few.pill);
+    few.broadphase.shapeChanged(few.pool[1]->getBroadphaseHandle(), &few.dispatcher);
+    few.world.stepSimulation(btScalar(1) / 60, 0);
+    ASSERT_EQ(few.restoreWithout(snapshot), "");
+    EXPECT_EQ(wholeState(few.world), state);
+    EXPECT_EQ(few.pool[1]->getCollisionShape(), &few.shapeOf(1));
+}
+
+TEST(WorldSnapshot, RefusesACompoundShapeThatHasChanged) {
+    FewBodies few;
+    btCompoundShape inner;
+    inner.addChildShape(btTransform::getIdentity(), &few.ball);
+    btCompoundShape outer;
+    outer.addChildShape(btTransform::getIdentity(), &inner);
+    btRigidBody body(1, nullptr, &outer, btVector3(1, 1, 1));
+    few.world.addRigidBody(&body);
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    inner.addChildShape(btTransform::getIdentity(), &few.box);
+    EXPECT_EQ(few.restoreWithout(snapshot),
+              "Object 7 (unique id 8) has a compound shape that has changed since.");
+    few.world.removeRigidBody(&body);
+}
+
+TEST(WorldSnapshot, RefusesWhatItDoesNotCover) {
+    WorldSnapshot snapshot;
+    FewBodies few;
+    SpatialHashBroadphase other;
+    EXPECT_EQ(snapshot.save(few.world, other), "The broadphase is not that of the world.");
+    EXPECT_EQ(snapshot.restore(few.world, few.broadphase),
+              "Nothing was saved that could be restored.");
+
+    btRaycastVehicle::btVehicleTuning tuning;
+    btDefaultVehicleRaycaster caster(&few.world);
+    btRaycastVehicle vehicle(tuning, few.pool[0].get(), &caster);
+    few.world.addAction(&vehicle);
+    EXPECT_EQ(few.save(snapshot),
+              "Action 0 of the world is not a btKinematicCharacterController; vehicles are such "
+              "actions.");
+    few.world.removeAction(&vehicle);
+
+    few.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0).m_userPersistentData = &few;
+    EXPECT_EQ(few.save(snapshot),
+              "A contact point has user data (m_userPersistentData), which ends with it.");
+    few.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0).m_userPersistentData = nullptr;
+    EXPECT_TRUE(snapshot.isEmpty());
+
+    btPersistentManifold* const own = few.dispatcher.getNewManifold(&few.floor, &few.floor);
+    EXPECT_NE(few.save(snapshot).find("1 belong to no pair of the world"), std::string::npos);
+    few.dispatcher.releaseManifold(own);
+
+    EXPECT_EQ(few.save(snapshot), "");
+    btCollisionObject stranger;
+    stranger.setCollisionShape(&few.ball);
+    few.world.addCollisionObject(&stranger);
+    struct Type : btCollisionObject {
+        static void set(btCollisionObject& object, int type) {
+            object.*(&Type::m_internalType) = type;
+        }
+    };
+    Type::set(stranger, btCollisionObject::CO_SOFT_BODY);
+    EXPECT_EQ(few.save(snapshot), "Object 7 of the world is a soft body.");
+    Type::set(stranger, btCollisionObject::CO_FEATHERSTONE_LINK);
+    EXPECT_EQ(few.save(snapshot), "Object 7 of the world is a link of a multibody.");
+    Type::set(stranger, btCollisionObject::CO_COLLISION_OBJECT);
+    EXPECT_EQ(few.save(snapshot), "");
+    few.world.removeCollisionObject(&stranger);
+}
+
+TEST(WorldSnapshot, RefusesOtherPairCachesSolversAndMultibodies) {
+    WorldSnapshot snapshot;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    {
+        btHashedOverlappingPairCache cache;
+        SpatialHashBroadphase broadphase(&cache);
+        btSequentialImpulseConstraintSolver solver;
+        btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+        EXPECT_EQ(snapshot.save(world, broadphase),
+                  "The pair cache is not a hashphase::PairCache.");
+    }
+    {
+        struct OwnSolver : btConstraintSolver {
+            btScalar solveGroup(btCollisionObject**, int, btPersistentManifold**, int,
+                                btTypedConstraint**, int, const btContactSolverInfo&, btIDebugDraw*,
+                                btDispatcher*) override {
+                return 0;
+            }
+            void reset() override {}
+            [[nodiscard]] btConstraintSolverType getSolverType() const override {
+                return BT_SEQUENTIAL_IMPULSE_SOLVER;
+            }
+        } solver;
+        SpatialHashBroadphase broadphase;
+        btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+        EXPECT_EQ(snapshot.save(world, broadphase),
+                  "The world's solver is not a btSequentialImpulseConstraintSolver.");
+    }
+    SpatialHashBroadphase broadphase;
+    btMultiBodyConstraintSolver solver;
+    btMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+    EXPECT_EQ(snapshot.save(world, broadphase), "");
+    btMultiBody body(0, 1, btVector3(1, 1, 1), false, false);
+    body.finalizeMultiDof();
+    world.addMultiBody(&body);
+    EXPECT_EQ(snapshot.save(world, broadphase), "The world has multibodies.");
+    world.removeMultiBody(&body);
+}
+
+TEST(WorldSnapshot, TakesNoMemoryInASteadyFrame) {
+    FewBodies few;
+    WorldSnapshot snapshot;
+    for (int i = 0; i < 3; ++i) {
+        ASSERT_EQ(few.save(snapshot), "");
+        ASSERT_EQ(few.restoreWithout(snapshot), "");
+    }
+    const std::size_t before = allocationCount();
+    for (int i = 0; i < 10; ++i) {
+        static_cast<void>(few.save(snapshot));
+        static_cast<void>(few.restoreWithout(snapshot));
+    }
+    EXPECT_EQ(allocationCount(), before);
+}
+
+TEST(WorldSnapshot, ChangesNothingWhereMemoryRunsOut) {
+    if (!kCountsAllocations) {
+        GTEST_SKIP() << "no allocation fails here";
+    }
+    struct TwoStates : FewBodies {
+        TwoStates() {
+            static_cast<void>(save(first));
+            for (std::size_t i = 6; i < 30; ++i) {
+                add(i, btVector3(0, static_cast<btScalar>(i), 0));
+            }
+            world.stepSimulation(btScalar(1) / 60, 0);
+            state = wholeState(world);
+        }
+        WorldSnapshot first;
+        std::uint64_t state = 0;
+    };
+    std::uint64_t then = 0;
+    {
+        TwoStates whole;
+        ASSERT_EQ(whole.restore(whole.first), "");
+        then = wholeState(whole.world);
+    }
+    const std::size_t failures =
+        runOutOfMemory([] { return std::make_unique<TwoStates>(); },
+                       [](TwoStates& two) { static_cast<void>(two.restoreWithout(two.first)); },
+                       [&](TwoStates& two, std::size_t) {
+                           if (two.isIn(20)) {
+                               EXPECT_EQ(wholeState(two.world), two.state);
+                               ASSERT_EQ(two.restoreWithout(two.first), "");
+                           }
+                           EXPECT_EQ(wholeState(two.world), then);
+                       });
+    EXPECT_GT(failures, 1U);
+    const std::size_t failedSaves = runOutOfMemory(
+        [] { return std::make_unique<TwoStates>(); },
+        [](TwoStates& two) {
+            WorldSnapshot snapshot;
+            static_cast<void>(two.save(snapshot));
+        },
+        [&](TwoStates& two, std::size_t) { EXPECT_EQ(wholeState(two.world), two.state); });
+    EXPECT_GT(failedSaves, 10U);
+}
+
+}  // namespace
+}  // namespace hashphase::test
