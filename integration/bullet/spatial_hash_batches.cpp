@@ -154,7 +154,8 @@ private:
         };
         const auto moveOf = [&](std::size_t offset) {
             const Proxy& proxy = at(first + offset);
-            return detail::Move<btScalar>{proxy.id.index, toAabb(proxy.m_aabbMin, proxy.m_aabbMax)};
+            return detail::Move<btScalar>{
+                proxy.id.index, grown(toAabb(proxy.m_aabbMin, proxy.m_aabbMax), proxy.margin)};
         };
         const bool areMany = last - first >= kWorthThreads;
         detail::MoveBatch<btScalar>(owner_.grid_.store())
