@@ -161,14 +161,13 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     if (own->id.isNull()) {  // destroyed before
         return;
     }
-    if (sweeps_ != nullptr || !areGroupsKnown(*own) ||
+    if ((mayGrow_ && (sweeps_ != nullptr || own->margin != 0)) || !areGroupsKnown(*own) ||
         !movesAlone(*own, aabbMin, aabbMax, dispatcher)) {
         setAnyAabb(*own, aabbMin, aabbMax, own->margin, dispatcher);
         return;
     }
     if (!isSameBits(own->m_aabbMin, aabbMin) || !isSameBits(own->m_aabbMax, aabbMax)) {
-        if (!grid_.store().moveIfInPlace(own->id.index,
-                                         grown(toAabb(aabbMin, aabbMax), own->margin))) {
+        if (!grid_.store().moveIfInPlace(own->id.index, toAabb(aabbMin, aabbMax))) {
             setAnyAabb(*own, aabbMin, aabbMax, own->margin, dispatcher);
             return;
         }

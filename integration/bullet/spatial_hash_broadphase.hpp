@@ -396,6 +396,7 @@ private:
     bool mustNoteGroups_ = false;          // of all
     bool isCacheBehind_ = false;           // of changes that did not all reach it
     bool isApplying_ = false;              // changes to the cache
+    bool mayGrow_ = sweeps_ != nullptr;    // the boxes of some, which sweep or have a margin
     std::unique_ptr<PairCache> ownCache_;  // if none was given
     detail::CacheWatch watch_;             // of the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;

@@ -92,6 +92,7 @@ void SpatialHashBroadphase::setMargin(btBroadphaseProxy* proxy, btScalar margin,
     const bool isGood = margin >= 0 && margin <= std::numeric_limits<btScalar>::max();
     HASHPHASE_ASSERT(isGood, "A margin is finite, and 0 or more.");
     if (!own->id.isNull() && isGood) {
+        mayGrow_ = mayGrow_ || margin != 0;
         setAnyAabb(*own, own->m_aabbMin, own->m_aabbMax, margin, dispatcher);
     }
 }
