@@ -13,8 +13,9 @@
 //           activation, whom they ignore. Contacts with their impulses, and the order of pairs and contacts.
 //           Joints with their motors, limits and impulses. Ghosts and characters. Gravity, the solver's settings
 //           and its seed, the time that is left of a step. The broadphase, its grid, pairs and sweeps.
-// What is not  What is the program's: user pointers and indices, motion states, joint feedback, debug colours, fields
-//           of classes derived from Bullet's. Shapes: only which one an object has.
+// What is not  What is the program's: user pointers and indices, joint feedback, debug colours, fields of classes
+//           derived from Bullet's. Motion states are told where their bodies are. Shapes: only which one an object
+//           has.
 // Refused   by a sentence that names it: soft bodies, multibodies, actions other than btKinematicCharacterController
 //           (btRaycastVehicle is one), pair caches other than PairCache, contact points with user data, solvers
 //           other than btSequentialImpulseConstraintSolver and those derived from it, joints of unknown types.

@@ -105,7 +105,8 @@ private:
     std::vector<PairCache::PairSortKey> retired_;
     bool isSorted_ = true;
     bool isMoreTakenOut_ = false;
-    // Scratch of restore(): by the place of a saved pair.
+    // Scratch of restore(): what the cache's watch gets; and by the place of a saved pair.
+    mutable std::unique_ptr<std::vector<BulletProxyPair>> takenOutAgain_;
     mutable std::vector<btCollisionAlgorithm*> algorithms_;
 };
 

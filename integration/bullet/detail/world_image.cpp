@@ -24,6 +24,18 @@ btSequentialImpulseConstraintSolver& solverOf(btDiscreteDynamicsWorld& world) {
     return *asSequentialImpulseSolver(world.getConstraintSolver());
 }
 
+// Bullet tells those of bodies that sleep nothing. Those of kinematic bodies tell where these are.
+void placeMotionState(btDiscreteDynamicsWorld& world, btRigidBody& body) {
+    if (body.getMotionState() == nullptr || body.isKinematicObject()) {
+        return;
+    }
+    if (body.isActive()) {
+        world.synchronizeSingleMotionState(&body);
+    } else {
+        body.getMotionState()->setWorldTransform(body.getWorldTransform());
+    }
+}
+
 template <class Item>
 int savePointers(const btAlignedObjectArray<Item>& from, std::vector<const void*>& to) {
     for (int i = 0; i < from.size(); ++i) {
@@ -227,6 +239,9 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     for (const SavedJoint& saved : joints) {
         allJoints.push_back(saved.joint);
         restoreJoint(*saved.joint, reader);
+    }
+    for (btRigidBody* body : bodies) {
+        placeMotionState(world, *body);
     }
     auto& allActions = WorldMembers::actions(world);
     allActions.resizeNoInitialize(0);

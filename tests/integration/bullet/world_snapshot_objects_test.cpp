@@ -288,6 +288,57 @@ TEST(WorldSnapshot, GivesAnObjectItsShapeBack) {
     EXPECT_EQ(few.pool[1]->getCollisionShape(), &few.shapeOf(1));
 }
 
+TEST(WorldSnapshot, TellsMotionStatesWhereTheirBodiesAre) {
+    FewBodies few;
+    std::array<btDefaultMotionState, 2> states;
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        states[i].setWorldTransform(few.pool[i]->getWorldTransform());
+        few.pool[i]->setMotionState(&states[i]);
+    }
+    few.pool[1]->forceActivationState(ISLAND_SLEEPING);
+    few.world.stepSimulation(btScalar(1) / 60, 0);
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    const std::array<btTransform, 2> places{states[0].m_graphicsWorldTrans,
+                                            few.pool[1]->getWorldTransform()};
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        few.pool[i]->activate(true);
+        few.pool[i]->setLinearVelocity(btVector3(9, 9, 9));
+    }
+    for (int step = 0; step < 20; ++step) {
+        few.world.stepSimulation(btScalar(1) / 60, 0);
+    }
+    ASSERT_FALSE(states[1].m_graphicsWorldTrans == places[1]);
+    ASSERT_EQ(few.restoreWithout(snapshot), "");
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        EXPECT_TRUE(states[i].m_graphicsWorldTrans == places[i]) << i;
+        few.pool[i]->setMotionState(nullptr);
+    }
+}
+
+// The program has taken pairs out of the cache: these come back in the next step, after it as before.
+TEST(WorldSnapshot, KeepsWhatWasTakenOutOfTheCache) {
+    PoolWorld straight;
+    PoolWorld saved;
+    WorldSnapshot snapshot;
+    for (PoolWorld* world : {&straight, &saved}) {
+        for (std::uint64_t frame = 0; frame < 60; ++frame) {
+            world->play(frame);
+        }
+        const btBroadphasePair pair = world->cache.getOverlappingPairArray()[0];
+        world->cache.removeOverlappingPair(pair.m_pProxy0, pair.m_pProxy1, &world->dispatcher);
+    }
+    ASSERT_EQ(saved.save(snapshot), "");
+    for (std::uint64_t frame = 900; frame < 910; ++frame) {
+        saved.play(frame);
+    }
+    ASSERT_EQ(saved.restore(snapshot), "");
+    ASSERT_EQ(saved.restore(snapshot), "");
+    for (std::uint64_t frame = 60; frame < 90; ++frame) {
+        ASSERT_EQ(saved.play(frame), straight.play(frame)) << "frame " << frame;
+    }
+}
+
 TEST(WorldSnapshot, RefusesACompoundShapeThatHasChanged) {
     FewBodies few;
     btCompoundShape inner;
