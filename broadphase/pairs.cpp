@@ -52,6 +52,14 @@ PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & 
 }
 
 template <class Scalar>
+bool Pairs<Scalar>::isUpToDate() const noexcept {
+    const detail::Store<Scalar>& store = grid_.store();
+    return !store.mustFile() && !store.mustRebuildPairs && store.proxies.sweeping.empty() &&
+           (sweeps_ == nullptr || sweeps_->size() == 0) && state_.known.kept.size() == 0 &&
+           state_.known.immediate.size() == 0;
+}
+
+template <class Scalar>
 PairChanges Pairs<Scalar>::findPairsNow(ProxyId id, PairFilter filter) & {
     HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid has pairs to find.");
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);

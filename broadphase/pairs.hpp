@@ -139,6 +139,9 @@ public:
     /// not alive. Cost: O(1).
     [[nodiscard]] bool isPair(const ProxyPair& pair) const noexcept;
 
+    /// Whether update() would find nothing: no proxy has changed since the last one, and no pair. Cost: O(1).
+    [[nodiscard]] bool isUpToDate() const noexcept;
+
     /// Number of pairs in the set.
     [[nodiscard]] std::size_t count() const noexcept { return state_.known.count; }
 

@@ -51,9 +51,8 @@ int PairCache::uniqueId(const btBroadphaseProxy& proxy) {
 }
 
 PairCache::~PairCache() {
-    if (watch_ != nullptr) {
-        watch_->forget();
-        watch_->cache = nullptr;
+    if (watcher_ != nullptr) {
+        watcher_->endCache();
     }
 }
 
@@ -140,8 +139,8 @@ void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing fre
 }
 
 void PairCache::noteTakenOut(const btBroadphasePair& pair) const noexcept {
-    if (watch_ != nullptr) {
-        watch_->note(pair);
+    if (watcher_ != nullptr) {
+        watcher_->note(pair);
     }
 }
 

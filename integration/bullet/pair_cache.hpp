@@ -50,7 +50,7 @@
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 class BroadphaseImage;
-struct CacheWatch;
+struct CacheWatcher;
 }
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -283,9 +283,9 @@ public:
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
                        Remover remover);
 
-    /// Where pairs that others take out are noted; null for nowhere.
-    [[nodiscard]] detail::CacheWatch* watch() const noexcept { return watch_; }
-    void setWatch(detail::CacheWatch* watch) noexcept { watch_ = watch; }
+    /// Who is told of pairs that others take out; null for nobody.
+    [[nodiscard]] detail::CacheWatcher* watcher() const noexcept { return watcher_; }
+    void setWatcher(detail::CacheWatcher* watcher) noexcept { watcher_ = watcher; }
 
 private:
     // A pair has two edges: 2 * its index for the proxy with the lower unique id, and that + 1. The
@@ -411,7 +411,7 @@ private:
 
     std::vector<Retired> retired_;
 
-    detail::CacheWatch* watch_ = nullptr;
+    detail::CacheWatcher* watcher_ = nullptr;
 
     std::vector<std::uint32_t> places_;  // scratch of batches, vacant ones; and of sort(), new ones
     std::unique_ptr<detail::KeyParts> parts_;  // scratch of batches on threads

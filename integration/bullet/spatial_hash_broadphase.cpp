@@ -91,7 +91,7 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                                                       void* userPtr, int collisionFilterGroup,
                                                       int collisionFilterMask,
                                                       btDispatcher* dispatcher) {
-    detail::checkCount(static_cast<std::size_t>(lastUniqueId_) + 1, std::numeric_limits<int>::max(),
+    detail::checkCount(static_cast<std::size_t>(*idCounter_) + 1, std::numeric_limits<int>::max(),
                        "All unique ids are used up. Without proxies, resetPool() counts anew.");
     Proxy& proxy = place({aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask});
     const detail::OnFailure destroy([&] {
@@ -121,8 +121,9 @@ SpatialHashBroadphase::Proxy& SpatialHashBroadphase::place(const btBroadphasePro
     static_cast<btBroadphaseProxy&>(proxy) = made;
     proxy.kind = groupKinds_.numberOf(groups);
     changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
-    proxy.m_uniqueId = ++lastUniqueId_;
+    proxy.m_uniqueId = ++*idCounter_;
     proxy.id = id;
+    proxy.world = worldNumber_;
     proxy.client = Client::unknown;
     proxy.margin = 0;
     noteSeen(proxy, true);
@@ -252,18 +253,25 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
                      "calculateOverlappingPairs() is not called by its own callbacks.");
     const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
-    followFilter();
-    noteGroupsIfTheyMatter();
     askIfMoreWasTakenOut(dispatcher);
-    const PairChanges changes = config_.parallelFor
-                                    ? pairs_.update(cacheFilter(), config_.parallelFor)
-                                    : pairs_.update(cacheFilter());
+    const PairChanges changes = updatePairs();
     if (isCacheBehind_) {
         catchUp(dispatcher);
     } else {
         constexpr std::size_t kBirthsAtOnce = 4096;  // the processor's cache holds them
         apply(changes, config_.parallelFor ? changes.born.size() : kBirthsAtOnce, dispatcher);
     }
+    endCalculation(dispatcher);
+}
+
+PairChanges SpatialHashBroadphase::updatePairs() {
+    followFilter();
+    noteGroupsIfTheyMatter();
+    return config_.parallelFor ? pairs_.update(cacheFilter(), config_.parallelFor)
+                               : pairs_.update(cacheFilter());
+}
+
+void SpatialHashBroadphase::endCalculation(btDispatcher* dispatcher) {
     putBackWhatWasTakenOut(dispatcher);
     const auto meets = [this](const btBroadphasePair& pair) {
         return doMeet(*pair.m_pProxy0, *pair.m_pProxy1);
@@ -274,18 +282,19 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
 
 // A destroyed proxy has taken its pairs with it.
 void SpatialHashBroadphase::findBulletPairs(std::span<const ProxyPair> pairs,
-                                            std::vector<BulletProxyPair>& bulletPairs) const {
-    bulletPairs.resize(pairs.size());
+                                            std::vector<BulletProxyPair>& bulletPairs,
+                                            std::size_t first) const {
+    bulletPairs.resize(first + pairs.size());
+    const std::span<BulletProxyPair> found = std::span(bulletPairs).subspan(first);
     std::atomic<bool> areAllThere{true};
     forPairs(true, pairs.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t first = pairs[i].first.index;
-            const std::uint32_t second = pairs[i].second.index;
-            if (uniqueIds_[first] != 0 && uniqueIds_[second] != 0) {
-                bulletPairs[i] = {*proxyAt(first), uniqueIds_[first], *proxyAt(second),
-                                  uniqueIds_[second]};
+            const std::uint32_t a = pairs[i].first.index;
+            const std::uint32_t b = pairs[i].second.index;
+            if (uniqueIds_[a] != 0 && uniqueIds_[b] != 0) {
+                found[i] = {*proxyAt(a), uniqueIds_[a], *proxyAt(b), uniqueIds_[b]};
             } else {
-                bulletPairs[i] = {};
+                found[i] = {};
                 areAllThere.store(false, std::memory_order_relaxed);
             }
         }
@@ -386,7 +395,8 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
     lists.died.clear();
     btBroadphasePairArray& present = pairCache_->getOverlappingPairArray();
     for (int i = 0; i < present.size(); ++i) {
-        if (!std::binary_search(all.begin(), all.end(),
+        if (isOfThisWorld(*present[i].m_pProxy0) &&
+            !std::binary_search(all.begin(), all.end(),
                                 pairOf(present[i].m_pProxy0, present[i].m_pProxy1))) {
             lists.died.emplace_back(*present[i].m_pProxy0, *present[i].m_pProxy1);
         }
@@ -422,17 +432,6 @@ bool SpatialHashBroadphase::doMeet(const btBroadphaseProxy& a, const btBroadphas
         return overlaps(grid_.box(idOf(&a)), grid_.box(idOf(&b)));
     }
     return firstContact(sweeps_->motion(idOf(&a)), sweeps_->motion(idOf(&b))).has_value();
-}
-
-void SpatialHashBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
-    Aabb<btScalar> all;
-    grid_.forEach([&](ProxyId /*id*/, const Aabb<btScalar>& box) {
-        if (!hasNan(box)) {
-            all.extend(box);
-        }
-    });
-    aabbMin = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.min());
-    aabbMax = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.max());
 }
 
 btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {

@@ -59,6 +59,8 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
+class WorldsBroadphase;
+
 /// A btBroadphaseInterface over a Grid, in place of btDbvtBroadphase.
 class HASHPHASE_BULLET_EXPORT SpatialHashBroadphase : public btBroadphaseInterface,
                                                       private detail::LivingBroadphase {
@@ -114,11 +116,17 @@ public:
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
                  const btVector3& aabbMax = btVector3(0, 0, 0)) override;
+    void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
+                 btBroadphaseRayCallback& rayCallback,
+                 const btVector3& aabbMin = btVector3(0, 0, 0),
+                 const btVector3& aabbMax = btVector3(0, 0, 0)) const;
 
     /// Calls callback.process() once for every proxy whose box overlaps the given one (closed). Cost:
     /// at most one test for each proxy.
     void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                   btBroadphaseAabbCallback& callback) override;
+    void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
+                  btBroadphaseAabbCallback& callback) const;
 
     /// Makes the cache's pairs exact: afterwards it holds precisely the pairs of overlapping proxies that its
     /// filter accepts, and with SpatialHashConfig::sweep those that meet on their ways. Pairs that persist
@@ -287,14 +295,34 @@ private:
     struct Proxy : btBroadphaseProxy {
         ProxyId id;
         Client client = Client::unknown;
-        std::uint8_t kind = 0;  // of its groups, as the grid knows them, in groupKinds_
-        btScalar margin = 0;    // by which the grid's box is larger on each side [m]
+        std::uint8_t kind = 0;    // of its groups, as the grid knows them, in groupKinds_
+        std::uint16_t world = 0;  // of a WorldsBroadphase
+        btScalar margin = 0;      // by which the grid's box is larger on each side [m]
     };
     struct PairLists;
     class Applying;
     class AabbBatch;
     template <class Callback>
     struct ProcessCollector;
+
+    // As one of many worlds: spatial_hash_world.cpp.
+    SpatialHashBroadphase(const SpatialHashConfig& config, PairCache& sharedCache,
+                          int& sharedUniqueId, std::uint16_t worldNumber);
+    [[nodiscard]] bool isUpToDate() const noexcept;
+    void listChanges(const PairChanges& changes, std::vector<BulletProxyPair>& died,
+                     std::vector<BulletProxyPair>& born) const;
+    void listAll(std::vector<BulletProxyPair>& bulletPairs) const;
+    [[nodiscard]] bool isWorld() const noexcept { return idCounter_ != &lastUniqueId_; }
+    [[nodiscard]] bool isOfThisWorld(const btBroadphaseProxy& proxy) const noexcept {
+        return static_cast<const Proxy&>(proxy).world == worldNumber_;
+    }
+
+    // Whether the callback has ended the query.
+    [[nodiscard]] bool endsRayTest(const btVector3& from, const btVector3& to,
+                                   btBroadphaseRayCallback& callback, const btVector3& castMin,
+                                   const btVector3& castMax) const;
+    [[nodiscard]] bool endsAabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
+                                    btBroadphaseAabbCallback& callback) const;
 
     // A proxy may be given to Bullet, which takes no const ones, by const members.
     [[nodiscard]] Proxy* proxyAt(std::uint32_t slot) const { return proxies_.at(slot); }
@@ -335,7 +363,9 @@ private:
     void releaseAfterPeak() noexcept;
     void forPairs(bool isOnThreads, std::size_t count, LoopBody body) const;
     void findBulletPairs(std::span<const ProxyPair> pairs,
-                         std::vector<BulletProxyPair>& bulletPairs) const;
+                         std::vector<BulletProxyPair>& bulletPairs, std::size_t first = 0) const;
+    [[nodiscard]] PairChanges updatePairs();
+    void endCalculation(btDispatcher* dispatcher);
     void apply(const PairChanges& changes, std::size_t birthsAtOnce, btDispatcher* dispatcher);
     void applyToCache(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                       btDispatcher* dispatcher);
@@ -382,6 +412,7 @@ private:
         return static_cast<Proxy*>(proxy);
     }
 
+    friend class WorldsBroadphase;
     friend class detail::LivingBroadphase;
     friend class detail::BroadphaseImage;
     SpatialHashConfig config_;
@@ -392,6 +423,8 @@ private:
     detail::StableArray<Proxy> proxies_;  // by ProxyId::index
     std::vector<int> uniqueIds_;          // by ProxyId::index; 0 where no proxy is alive
     int lastUniqueId_ = 0;
+    int* idCounter_ = &lastUniqueId_;  // or that of all worlds
+    std::uint16_t worldNumber_ = 0;
 
     bool groupsDecide_ = false;            // who may pair, and no callback
     bool mustNoteGroups_ = false;          // of all

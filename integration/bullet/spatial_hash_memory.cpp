@@ -24,7 +24,7 @@ void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
     }
     detail::freeArrays(died_, born_);
     dropLastProxies();
-    if (watch_.cache != nullptr) {
+    if (watch_.cache != nullptr && !isWorld()) {
         watch_.cache->releaseUnusedMemory();
     }
 }
@@ -41,9 +41,12 @@ void SpatialHashBroadphase::dropLastProxies() noexcept {
     }
 }
 
-// The grid and its pairs look after themselves.
+// The grid and its pairs look after themselves, and a WorldsBroadphase after the cache of its worlds.
 void SpatialHashBroadphase::releaseAfterPeak() noexcept {
     dropLastProxies();
+    if (isWorld()) {
+        return;
+    }
     const std::size_t room = watch_.cache != nullptr ? watch_.cache->capacity() : died_.capacity();
     if (peaks_.isPast(pairs_.count(), room)) {
         detail::freeArrays(died_, born_);

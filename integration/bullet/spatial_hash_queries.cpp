@@ -141,9 +141,22 @@ struct SpatialHashBroadphase::ProcessCollector {
 void SpatialHashBroadphase::rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                                     btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
                                     const btVector3& aabbMax) {
-    const CallbackRayRegion region(rayFrom, rayTo, rayCallback, aabbMin, aabbMax);
-    ProcessCollector<btBroadphaseRayCallback> collector{*this, rayCallback};
+    static_cast<void>(endsRayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax));
+}
+
+void SpatialHashBroadphase::rayTest(const btVector3& rayFrom, const btVector3& rayTo,
+                                    btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
+                                    const btVector3& aabbMax) const {
+    static_cast<void>(endsRayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax));
+}
+
+bool SpatialHashBroadphase::endsRayTest(const btVector3& from, const btVector3& to,
+                                        btBroadphaseRayCallback& callback, const btVector3& castMin,
+                                        const btVector3& castMax) const {
+    const CallbackRayRegion region(from, to, callback, castMin, castMax);
+    ProcessCollector<btBroadphaseRayCallback> collector{*this, callback};
     grid_.visit(region, collector);
+    return collector.isStopped;
 }
 
 void SpatialHashBroadphase::rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor) {
@@ -179,8 +192,30 @@ void SpatialHashBroadphase::closestRays(std::span<const ClosestRay> rays,
 
 void SpatialHashBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                                      btBroadphaseAabbCallback& callback) {
+    static_cast<void>(endsAabbTest(aabbMin, aabbMax, callback));
+}
+
+void SpatialHashBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
+                                     btBroadphaseAabbCallback& callback) const {
+    static_cast<void>(endsAabbTest(aabbMin, aabbMax, callback));
+}
+
+bool SpatialHashBroadphase::endsAabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
+                                         btBroadphaseAabbCallback& callback) const {
     ProcessCollector<btBroadphaseAabbCallback> collector{*this, callback};
     grid_.visit(BoxRegion<btScalar>{toAabb(aabbMin, aabbMax)}, collector);
+    return collector.isStopped;
+}
+
+void SpatialHashBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
+    Aabb<btScalar> all;
+    grid_.forEach([&](ProxyId /*id*/, const Aabb<btScalar>& box) {
+        if (!hasNan(box)) {
+            all.extend(box);
+        }
+    });
+    aabbMin = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.min());
+    aabbMax = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.max());
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -6,18 +6,18 @@
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 CacheWatch::~CacheWatch() {
-    if (cache != nullptr && cache->watch() == this) {
-        cache->setWatch(nullptr);
+    if (cache != nullptr && cache->watcher() == this) {
+        cache->setWatcher(nullptr);
     }
 }
 
 void CacheWatch::begin(PairCache& watched) noexcept {
-    if (watched.watch() != nullptr) {
-        watched.watch()->forget();
+    if (watched.watcher() != nullptr) {
+        watched.watcher()->forget();
     }
     forget();
     cache = &watched;
-    watched.setWatch(this);
+    watched.setWatcher(this);
 }
 
 void CacheWatch::note(const btBroadphasePair& pair) noexcept {
@@ -47,6 +47,11 @@ void CacheWatch::pruneTakenOut() noexcept {
 void CacheWatch::forget() noexcept {
     takenOut = nullptr;
     isMoreTakenOut = false;
+}
+
+void CacheWatch::endCache() noexcept {
+    forget();
+    cache = nullptr;
 }
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -10,9 +10,22 @@
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
+/// Who is told by a pair cache of pairs that others take out of it, and of its end.
+struct CacheWatcher {
+    virtual void note(const btBroadphasePair& pair) noexcept = 0;
+
+    /// Forgets what was taken out.
+    virtual void forget() noexcept = 0;
+
+    virtual void endCache() noexcept = 0;
+
+protected:
+    ~CacheWatcher() = default;
+};
+
 /// What a broadphase knows of its pair cache: whether it is still there, and which pairs others have taken
 /// out of it. The cache writes here; either may end first.
-struct CacheWatch {
+struct CacheWatch final : CacheWatcher {
     CacheWatch() = default;
     ~CacheWatch();
     CacheWatch(const CacheWatch&) = delete;
@@ -21,8 +34,9 @@ struct CacheWatch {
     /// Watches the cache, in place of any other watch of it.
     void begin(PairCache& watched) noexcept;
 
-    /// Notes a pair that is taken out.
-    void note(const btBroadphasePair& pair) noexcept;
+    void note(const btBroadphasePair& pair) noexcept override;
+    void forget() noexcept override;
+    void endCache() noexcept override;
 
     /// Where nobody asks, those of which a proxy is gone do not gather, nor those that are back.
     void prune() noexcept {
@@ -30,9 +44,6 @@ struct CacheWatch {
             pruneTakenOut();
         }
     }
-
-    /// Forgets what was taken out.
-    void forget() noexcept;
 
     [[nodiscard]] bool isAnythingTakenOut() const noexcept {
         return isMoreTakenOut || takenOut != nullptr;

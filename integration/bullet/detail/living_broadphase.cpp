@@ -29,12 +29,19 @@ LivingBroadphase::LivingBroadphase() noexcept {
 }
 
 LivingBroadphase::~LivingBroadphase() {
+    if (isListed_) {
+        unlist();
+    }
+}
+
+void LivingBroadphase::unlist() noexcept {
     const std::lock_guard lock(livingMutex());
     LivingBroadphase** link = &newestLiving;
     while (*link != this) {
         link = &(*link)->next_;
     }
     *link = next_;
+    isListed_ = false;
 }
 
 SpatialHashBroadphase* LivingBroadphase::find(const btBroadphaseInterface* broadphase) noexcept {

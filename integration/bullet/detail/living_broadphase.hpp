@@ -26,8 +26,13 @@ public:
     [[nodiscard]] static SpatialHashBroadphase* find(
         const btBroadphaseInterface* broadphase) noexcept;
 
+protected:
+    /// For one that no world of Bullet's has for its own: find() does not look at it.
+    void unlist() noexcept;
+
 private:
     LivingBroadphase* next_ = nullptr;
+    bool isListed_ = true;
 };
 
 }  // namespace detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/bullet/worlds_broadphase.hpp>
+
+#include <broadphase/core/on_failure.hpp>
+#include <broadphase/core/raise.hpp>
+#include <integration/bullet/conversions.hpp>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+const WorldsConfig& checked(const WorldsConfig& config) {
+    const std::string error = configError(config);
+    if (!error.empty()) {
+        detail::raiseInvalidArgument(error);
+    }
+    return config;
+}
+
+}  // namespace
+
+std::string configError(const WorldsConfig& config) {
+    if (config.worldCount < 1 || config.worldCount > WorldsBroadphase::kMostWorlds) {
+        return "WorldsConfig::worldCount is " + std::to_string(config.worldCount) +
+               ", but must be from 1 to " + std::to_string(WorldsBroadphase::kMostWorlds) + ".";
+    }
+    if (!config.worldOf) {
+        return "WorldsConfig::worldOf is empty, but must tell the world of each object.";
+    }
+    return configError(config.each);
+}
+
+WorldsBroadphase::WorldsBroadphase(PairCache* pairCache, const WorldsConfig& config)
+    : config_(checked(config)),
+      ownCache_(pairCache == nullptr ? std::make_unique<PairCache>() : nullptr),
+      pairCache_(pairCache == nullptr ? ownCache_.get() : pairCache) {
+    SpatialHashConfig each = config.each;
+    each.parallelFor = nullptr;  // they run side by side
+    worlds_.reserve(static_cast<std::size_t>(config.worldCount));
+    for (int number = 0; number < config.worldCount; ++number) {
+        worlds_.emplace_back(
+            new World(each, *pairCache_, lastUniqueId_, static_cast<std::uint16_t>(number)));
+    }
+    if (pairCache_->watcher() != nullptr) {
+        pairCache_->watcher()->forget();
+    }
+    pairCache_->setWatcher(this);
+}
+
+WorldsBroadphase::~WorldsBroadphase() {
+    if (pairCache_ != nullptr && pairCache_->watcher() == this) {
+        pairCache_->setWatcher(nullptr);
+    }
+}
+
+// --- Which world ---------------------------------------------------------------------------------
+
+SpatialHashBroadphase& WorldsBroadphase::world(int number) {
+    HASHPHASE_ASSERT(number >= 0 && number < worldCount(), "There is a world of that number.");
+    return *worlds_[static_cast<std::size_t>(number)];
+}
+
+const SpatialHashBroadphase& WorldsBroadphase::world(int number) const {
+    HASHPHASE_ASSERT(number >= 0 && number < worldCount(), "There is a world of that number.");
+    return *worlds_[static_cast<std::size_t>(number)];
+}
+
+SpatialHashBroadphase& WorldsBroadphase::worldFor(const btBroadphaseProxy* proxy) const {
+    HASHPHASE_ASSERT(proxy != nullptr, "Only a proxy has a world.");
+    const std::size_t number = static_cast<const World::Proxy*>(proxy)->world;
+    HASHPHASE_ASSERT(number < worlds_.size(), "The proxy is of one of these worlds.");
+    return *worlds_[number];
+}
+
+int WorldsBroadphase::worldOf(const btBroadphaseProxy* proxy) const {
+    return worldFor(proxy).worldNumber_;
+}
+
+SpatialHashBroadphase& WorldsBroadphase::worldForClient(const void* client) {
+    if (client == nullptr) {
+        detail::raiseInvalidArgument(
+            "A proxy without a btCollisionObject has no world: create it by world().");
+    }
+    const int number = config_.worldOf(*static_cast<const btCollisionObject*>(client));
+    if (number < 0 || number >= worldCount()) {
+        detail::raiseInvalidArgument("WorldsConfig::worldOf returned " + std::to_string(number) +
+                                     ", but worlds are numbered from 0 to " +
+                                     std::to_string(worldCount() - 1) + ".");
+    }
+    return world(number);
+}
+
+// Calls call(world, its proxies), world by world.
+template <class Call>
+void WorldsBroadphase::forEachWorldOf(std::span<btBroadphaseProxy* const> proxies,
+                                      const Call& call) const {
+    std::vector<btBroadphaseProxy*> sorted(proxies.begin(), proxies.end());
+    const auto isBefore = [this](const btBroadphaseProxy* a, const btBroadphaseProxy* b) {
+        return worldOf(a) < worldOf(b);
+    };
+    std::stable_sort(sorted.begin(), sorted.end(), isBefore);
+    for (auto first = sorted.begin(); first != sorted.end();) {
+        const auto last = std::upper_bound(first, sorted.end(), *first, isBefore);
+        call(worldFor(*first), std::span<btBroadphaseProxy* const>(first, last));
+        first = last;
+    }
+}
+
+// --- btBroadphaseInterface -----------------------------------------------------------------------
+
+btBroadphaseProxy* WorldsBroadphase::createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
+                                                 int shapeType, void* userPtr,
+                                                 int collisionFilterGroup, int collisionFilterMask,
+                                                 btDispatcher* dispatcher) {
+    return worldForClient(userPtr).createProxy(aabbMin, aabbMax, shapeType, userPtr,
+                                               collisionFilterGroup, collisionFilterMask,
+                                               dispatcher);
+}
+
+void WorldsBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    worldFor(proxy).destroyProxy(proxy, dispatcher);
+}
+
+void WorldsBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
+                               const btVector3& aabbMax, btDispatcher* dispatcher) {
+    worldFor(proxy).World::setAabb(proxy, aabbMin, aabbMax, dispatcher);
+}
+
+void WorldsBroadphase::getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin,
+                               btVector3& aabbMax) const {
+    worldFor(proxy).getAabb(proxy, aabbMin, aabbMax);
+}
+
+void WorldsBroadphase::rayTest(const btVector3& rayFrom, const btVector3& rayTo,
+                               btBroadphaseRayCallback& rayCallback, const btVector3& aabbMin,
+                               const btVector3& aabbMax) {
+    for (const auto& world : worlds_) {
+        if (world->endsRayTest(rayFrom, rayTo, rayCallback, aabbMin, aabbMax)) {
+            return;
+        }
+    }
+}
+
+void WorldsBroadphase::aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
+                                btBroadphaseAabbCallback& callback) {
+    for (const auto& world : worlds_) {
+        if (world->endsAabbTest(aabbMin, aabbMax, callback)) {
+            return;
+        }
+    }
+}
+
+QueryCost WorldsBroadphase::closestRay(const btVector3& from, const btVector3& to,
+                                       btCollisionWorld::RayResultCallback& callback) const {
+    QueryCost cost;
+    for (const auto& world : worlds_) {
+        cost += world->closestRay(from, to, callback);
+    }
+    return cost;
+}
+
+void WorldsBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
+    Aabb<btScalar> all;
+    for (const auto& world : worlds_) {
+        if (world->grid().size() > world->grid().nanCount()) {
+            world->getBroadphaseAabb(aabbMin, aabbMax);
+            all.extend(toAabb(aabbMin, aabbMax));
+        }
+    }
+    aabbMin = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.min());
+    aabbMax = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.max());
+}
+
+void WorldsBroadphase::resetPool(btDispatcher* dispatcher) {
+    const bool isWithin = detail::QueryScope::isWithin(this);
+    HASHPHASE_ASSERT(!isWithin, "resetPool() is not called by callbacks.");
+    const auto isEmpty = [](const auto& world) { return world->grid().size() == 0; };
+    if (isWithin || !std::all_of(worlds_.begin(), worlds_.end(), isEmpty)) {
+        return;
+    }
+    for (const auto& world : worlds_) {
+        world->resetPool(dispatcher);
+    }
+    lastUniqueId_ = 0;
+}
+
+// --- Many at once, and beyond Bullet -------------------------------------------------------------
+
+void WorldsBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies,
+                                std::span<const btVector3> aabbMins,
+                                std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher) {
+    HASHPHASE_ASSERT(proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
+                     "There is exactly one box a proxy.");
+    for (std::size_t i = 0; i < proxies.size(); ++i) {
+        setAabb(proxies[i], aabbMins[i], aabbMaxs[i], dispatcher);
+    }
+}
+
+// All pairs at once: the cache may pass over those of all worlds.
+void WorldsBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxies,
+                                      btDispatcher* dispatcher) {
+    std::vector<btBroadphaseProxy*> alive;
+    std::copy_if(proxies.begin(), proxies.end(), std::back_inserter(alive),
+                 [this](btBroadphaseProxy* proxy) {
+                     return !worldFor(proxy).checkedProxy(proxy)->id.isNull();
+                 });
+    const detail::OnFailure fallBehind([&] {  // for nobody is destroyed
+        for (const btBroadphaseProxy* const proxy : alive) {
+            worldFor(proxy).isCacheBehind_ = true;
+        }
+    });
+    pairCache_->removePairsOf(alive, dispatcher, PairCache::Remover::broadphase);
+    for (btBroadphaseProxy* const proxy : alive) {
+        World& world = worldFor(proxy);
+        world.removeFromGrid(world.checkedProxy(proxy));
+    }
+}
+
+void WorldsBroadphase::refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    worldFor(proxy).refilter(proxy, dispatcher);
+}
+
+void WorldsBroadphase::refilter(std::span<btBroadphaseProxy* const> proxies,
+                                btDispatcher* dispatcher) {
+    forEachWorldOf(proxies, [&](World& world, std::span<btBroadphaseProxy* const> ofWorld) {
+        world.refilter(ofWorld, dispatcher);
+    });
+}
+
+void WorldsBroadphase::refilterAll(btDispatcher* dispatcher) {
+    for (const auto& world : worlds_) {
+        world->refilterAll(dispatcher);
+    }
+}
+
+void WorldsBroadphase::ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b,
+                                  btDispatcher* dispatcher) {
+    if (&worldFor(a) == &worldFor(b)) {
+        worldFor(a).ignorePair(a, b, dispatcher);
+    }
+}
+
+void WorldsBroadphase::stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
+                                        btDispatcher* dispatcher) {
+    if (&worldFor(a) == &worldFor(b)) {
+        worldFor(a).stopIgnoringPair(a, b, dispatcher);
+    }
+}
+
+bool WorldsBroadphase::isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const {
+    return &worldFor(a) == &worldFor(b) && worldFor(a).isIgnoredPair(a, b);
+}
+
+void WorldsBroadphase::collisionChecksChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    worldFor(proxy).collisionChecksChanged(proxy, dispatcher);
+}
+
+void WorldsBroadphase::collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,
+                                              btDispatcher* dispatcher) {
+    forEachWorldOf(proxies, [&](World& world, std::span<btBroadphaseProxy* const> ofWorld) {
+        world.collisionChecksChanged(ofWorld, dispatcher);
+    });
+}
+
+void WorldsBroadphase::setMargin(btBroadphaseProxy* proxy, btScalar margin,
+                                 btDispatcher* dispatcher) {
+    worldFor(proxy).setMargin(proxy, margin, dispatcher);
+}
+
+btScalar WorldsBroadphase::margin(const btBroadphaseProxy* proxy) const {
+    return worldFor(proxy).margin(proxy);
+}
+
+void WorldsBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    worldFor(proxy).shapeChanged(proxy, dispatcher);
+}
+
+std::size_t WorldsBroadphase::shiftOrigin(const btVector3& shift) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "The origin is not shifted by callbacks of calculateOverlappingPairs().");
+    std::size_t roundedCount = 0;
+    for (const auto& world : worlds_) {
+        roundedCount += world->shiftOrigin(shift);
+    }
+    return roundedCount;
+}
+
+}  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE
