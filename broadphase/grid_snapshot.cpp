@@ -3,6 +3,8 @@
 
 #include <broadphase/core/copy_parts.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/pairs/grid_twin.hpp>
+#include <broadphase/pairs/grid_twin_bytes.hpp>
 #include <broadphase/pairs/memory.inl>
 #include <broadphase/sweeps.hpp>
 
@@ -11,38 +13,6 @@
 namespace hashphase {
 
 namespace detail {
-
-/// What a grid, its pairs and its sweeps are made of; null for those that it lacks.
-template <class Store, class PairState, class Motions>
-struct Side {
-    Store* store;
-    PairState* pairs;
-    Motions* motions;
-};
-
-/// The same once more.
-template <class Scalar>
-struct GridTwin {
-    Store<Scalar> store;
-    Motions<Scalar> motions{store};
-    PairState<Scalar> pairs{store, nullptr};
-    bool hasPairs = false;
-    bool hasSweeps = false;
-
-    explicit GridTwin(const GridConfig& config) : store(config) {}
-    ~GridTwin() { store.proxies.sweeping.clear(); }  // which is the grid's to end
-    GridTwin(const GridTwin&) = delete;
-    GridTwin& operator=(const GridTwin&) = delete;
-
-    [[nodiscard]] auto side() { return sideOf(*this); }
-    [[nodiscard]] auto side() const { return sideOf(*this); }
-
-private:
-    [[nodiscard]] static auto sideOf(auto& twin) {
-        return Side{&twin.store, twin.hasPairs ? &twin.pairs : nullptr,
-                    twin.hasSweeps ? &twin.motions : nullptr};
-    }
-};
 
 namespace {
 
@@ -133,17 +103,38 @@ void GridSnapshot<Scalar>::restore(Pairs<Scalar>& pairs) const {
 }
 
 template <class Scalar>
-bool GridSnapshot<Scalar>::isMisused(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs) const {
-    const char* fault = detail::faultOf(grid, pairs);
+const char* GridSnapshot<Scalar>::faultFor(const Grid<Scalar>& grid,
+                                           const Pairs<Scalar>* pairs) const {
     if (isEmpty()) {
-        fault = "Nothing was saved that could be restored.";
-    } else if (fault == nullptr && twin_->store.config != grid.store().config) {
-        fault = "A grid is restored with the settings that it was saved with.";
-    } else if (fault == nullptr && twin_->hasPairs != (pairs != nullptr)) {
-        fault = detail::kPairsGoWithTheirGrid;
-    } else if (fault == nullptr && twin_->hasSweeps != (detail::motionsOf(pairs) != nullptr)) {
-        fault = "Where Pairs follow Sweeps, they do so when they are restored.";
+        return "Nothing was saved that could be restored.";
     }
+    if (twin_->store.config != grid.store().config) {
+        return "A grid is restored with the settings that it was saved with.";
+    }
+    if (twin_->hasPairs != (pairs != nullptr)) {
+        return detail::kPairsGoWithTheirGrid;
+    }
+    if (twin_->hasSweeps != (detail::motionsOf(pairs) != nullptr)) {
+        return "Where Pairs follow Sweeps, they do so when they are restored.";
+    }
+    return detail::faultOf(grid, pairs);
+}
+
+template <class Scalar>
+std::string GridSnapshot<Scalar>::faultFor(const Grid<Scalar>& grid) const {
+    const char* const fault = faultFor(grid, nullptr);
+    return fault != nullptr ? fault : "";
+}
+
+template <class Scalar>
+std::string GridSnapshot<Scalar>::faultFor(const Pairs<Scalar>& pairs) const {
+    const char* const fault = faultFor(pairs.grid(), &pairs);
+    return fault != nullptr ? fault : "";
+}
+
+template <class Scalar>
+bool GridSnapshot<Scalar>::isMisused(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs) const {
+    const char* const fault = faultFor(grid, pairs);
     HASHPHASE_ASSERT(fault == nullptr, fault);
     return fault != nullptr;
 }
@@ -164,6 +155,38 @@ void GridSnapshot<Scalar>::makeRoom(Pairs<Scalar>& pairs) const {
         detail::forEachPart(detail::sideOf(pairs.grid().store(), &pairs),
                             std::as_const(*twin_).side(), detail::MakeRoomForParts{});
     }
+}
+
+template <class Scalar>
+void GridSnapshot<Scalar>::write(std::vector<std::byte>& bytes) const {
+    HASHPHASE_ASSERT(!isEmpty(), "Nothing was saved that could be written.");
+    bytes.clear();
+    if (!isEmpty()) {
+        detail::writeTwin(*twin_, bytes);
+    }
+}
+
+template <class Scalar>
+std::string GridSnapshot<Scalar>::read(std::span<const std::byte> bytes) {
+    std::unique_ptr<detail::GridTwin<Scalar>> twin;
+    std::string fault = detail::readTwin(bytes, twin);
+    if (fault.empty()) {
+        twin_ = std::move(twin);
+        isSaved_ = true;
+    }
+    return fault;
+}
+
+template <class Scalar>
+std::uint32_t GridSnapshot<Scalar>::indexLimit() const noexcept {
+    return isEmpty() ? 0 : static_cast<std::uint32_t>(twin_->store.proxies.records.size());
+}
+
+template <class Scalar>
+ProxyId GridSnapshot<Scalar>::idAt(std::uint32_t index) const noexcept {
+    return index < indexLimit() && twin_->store.proxies.isAlive(index)
+               ? twin_->store.proxies.idOf(index)
+               : ProxyId{};
 }
 
 template <class Scalar>

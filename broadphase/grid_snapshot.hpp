@@ -27,7 +27,11 @@
 #include <broadphase/pairs.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 namespace hashphase {
 
@@ -56,9 +60,31 @@ public:
     /// The same of pairs, their grid and the sweeps that they follow.
     void restore(Pairs<Scalar>& pairs) const;
 
+    /// Says why the snapshot cannot be restored into the grid, or the pairs, in a sentence; empty where it can. To be
+    /// asked about a snapshot that was read, which may be of another grid.
+    [[nodiscard]] std::string faultFor(const Grid<Scalar>& grid) const;
+    [[nodiscard]] std::string faultFor(const Pairs<Scalar>& pairs) const;
+
     /// Makes room for restore(), which then takes no memory until the pairs, or their grid, have given some back. Where
     /// memory runs out, nothing has changed. Misuse as of restore().
     void makeRoom(Pairs<Scalar>& pairs) const;
+
+    /// Replaces what `bytes` held by the snapshot, which is not empty (asserted): to send or to keep. They begin with a
+    /// version and a checksum, and are the same for equal states. Numbers are as this processor has them.
+    /// Cost: O(what is saved).
+    void write(std::vector<std::byte>& bytes) const;
+
+    /// Takes what was written. Returns what is wrong with the bytes, in a sentence, and changes nothing then; else
+    /// nothing. Whatever the bytes, the snapshot that is read is one that a grid can have been in, or is refused.
+    /// What is the same after restore() are boxes, ids, groups, pairs, sweeps and all that follows from these: not
+    /// which proxies rest, and so neither costs nor the order in which queries find proxies.
+    /// Cost: O(what is saved), and finding all pairs from scratch.
+    [[nodiscard]] std::string read(std::span<const std::byte> bytes);
+
+    /// The proxy that had this index; null where none had. Cost: O(1).
+    [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept;
+    /// Grid::indexLimit() of the grid that was saved; 0 where none was.
+    [[nodiscard]] std::uint32_t indexLimit() const noexcept;
 
     /// Whether there is nothing to restore.
     [[nodiscard]] bool isEmpty() const noexcept { return twin_ == nullptr || !isSaved_; }
@@ -69,6 +95,7 @@ public:
 private:
     void save(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs);
     void restore(Grid<Scalar>& grid, Pairs<Scalar>* pairs) const;
+    [[nodiscard]] const char* faultFor(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs) const;
     [[nodiscard]] bool isMisused(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs) const;
 
     std::unique_ptr<detail::GridTwin<Scalar>> twin_;

@@ -88,11 +88,12 @@ template <class Scalar>
 
 template <class Scalar>
 [[nodiscard]] bool areIgnoredNoPairs(const PairState<Scalar>& pairs) {
+    const KnownPairs& known = pairs.known;
     const auto isNoPair = [&](const ProxyPair& pair) {
         const PairKey key = pairKey(pair.first.index, pair.second.index);
-        return !pairs.areAlive(pair) || pairs.known.isRefused(key) || !pairs.isKnown(key);
+        return !pairs.areAlive(pair) || known.isRefused(key) || !pairs.isKnown(key);
     };
-    return std::ranges::all_of(pairs.known.ignored.pairs(), isNoPair);
+    return known.ignored == nullptr || std::ranges::all_of(known.ignored->pairs(), isNoPair);
 }
 
 /// See Pairs::validate().

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,13 +22,16 @@ namespace hashphase::detail {
 
 template <class Scalar>
 [[nodiscard]] bool isIgnored(const PairState<Scalar>& pairs, const ProxyPair& pair) noexcept {
-    return pairs.known.ignored.contains(inOrder(pair)) && pairs.areAlive(pair);
+    return pairs.known.isIgnored(inOrder(pair)) && pairs.areAlive(pair);
 }
 
 template <class Scalar>
 void collectIgnored(const PairState<Scalar>& pairs, std::vector<ProxyPair>& all) {
     const auto begin = static_cast<std::ptrdiff_t>(all.size());
-    std::ranges::copy_if(pairs.known.ignored.pairs(), std::back_inserter(all),
+    if (pairs.known.ignored == nullptr) {
+        return;
+    }
+    std::ranges::copy_if(pairs.known.ignored->pairs(), std::back_inserter(all),
                          [&](const ProxyPair& pair) { return pairs.areAlive(pair); });
     std::sort(all.begin() + begin, all.end());
 }
@@ -35,7 +39,10 @@ void collectIgnored(const PairState<Scalar>& pairs, std::vector<ProxyPair>& all)
 template <class Scalar>
 [[nodiscard]] PairChanges ignore(PairState<Scalar>& pairs, std::span<const ProxyPair> some) {
     beginRefilter(pairs);
-    IgnoredPairs& ignored = pairs.known.ignored;
+    if (pairs.known.ignored == nullptr) {
+        pairs.known.ignored = std::make_unique<IgnoredPairs>();
+    }
+    IgnoredPairs& ignored = *pairs.known.ignored;
     std::vector<ProxyPair> added;
     added.reserve(some.size());
     ignored.reserve(some.size(), [&](const ProxyPair& pair) { return !pairs.areAlive(pair); });
@@ -61,12 +68,11 @@ template <class Scalar>
 [[nodiscard]] PairChanges stopIgnoring(PairState<Scalar>& pairs, std::span<const ProxyPair> some,
                                        PairFilter filter) {
     beginRefilter(pairs);
-    IgnoredPairs& ignored = pairs.known.ignored;
     std::vector<ProxyPair> erased;
     erased.reserve(some.size());
     const OnFailure insertErased([&] {
         for (const ProxyPair& pair : erased) {
-            ignored.insert(pair);
+            pairs.known.ignored->insert(pair);
         }
     });
     for (const ProxyPair& pair : some) {
@@ -74,7 +80,7 @@ template <class Scalar>
             continue;
         }
         erased.push_back(inOrder(pair));
-        ignored.erase(erased.back());
+        pairs.known.ignored->erase(erased.back());
         const PairKey key = pairKey(pair.first.index, pair.second.index);
         if (pairs.isKnown(key)) {
             listAgain(pairs, key);

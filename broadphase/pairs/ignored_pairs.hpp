@@ -21,10 +21,7 @@ class IgnoredPairs {
 public:
     /// Of two ids, the one with the lower index first, as everywhere here.
     [[nodiscard]] bool contains(const ProxyPair& pair) const noexcept {
-        if (pairs_.empty()) {
-            return false;
-        }
-        const std::uint32_t number = keys_.find(keyOf(pair));
+        const std::uint32_t number = pairs_.empty() ? FlatSet::kNone : keys_.find(keyOf(pair));
         return number != FlatSet::kNone && pairs_[number] == pair;
     }
     [[nodiscard]] std::size_t size() const noexcept { return pairs_.size(); }
@@ -76,7 +73,7 @@ public:
     }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return keys_.memoryBytes() + pairs_.capacity() * sizeof(ProxyPair);
+        return sizeof(*this) + keys_.memoryBytes() + pairs_.capacity() * sizeof(ProxyPair);
     }
 
 private:

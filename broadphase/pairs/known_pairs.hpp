@@ -90,7 +90,8 @@ struct KnownPairs {
     // that were filtered again count as refused until the next update.
     FlatSet kept;
     PairKeySet immediate;  // candidates decided since the last update
-    IgnoredPairs ignored;  // those of them that are candidates count as refused
+    // Made with the first one. Candidates among them count as refused.
+    std::unique_ptr<IgnoredPairs> ignored;
     SweptPairs swept;
     std::size_t count = 0;  // of pairs
 
@@ -99,6 +100,10 @@ struct KnownPairs {
     /// Whether it is one of the pairs that are remembered.
     [[nodiscard]] bool isRemembered(PairKey key) const noexcept {
         return arePairs() && pile->pairs.contains(key);
+    }
+    /// Of two ids, the one with the lower index first.
+    [[nodiscard]] bool isIgnored(const ProxyPair& pair) const noexcept {
+        return ignored != nullptr && ignored->contains(pair);
     }
     [[nodiscard]] bool isRefused(PairKey key) const noexcept {
         return arePairs() ? !pile->pairs.contains(key)
@@ -122,8 +127,9 @@ struct KnownPairs {
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return refused.memoryBytes() + refusedAtRest.memoryBytes() + kept.memoryBytes() +
-               immediate.memoryBytes() + ignored.memoryBytes() + swept.memoryBytes() +
-               (pile != nullptr ? pile->memoryBytes() : 0);
+               immediate.memoryBytes() + swept.memoryBytes() +
+               (pile != nullptr ? pile->memoryBytes() : 0) +
+               (ignored != nullptr ? ignored->memoryBytes() : 0);
     }
 
     /// What is copied: core/copy_parts.hpp.

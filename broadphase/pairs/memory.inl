@@ -44,7 +44,9 @@ void releaseUnusedMemory(PairState<Scalar>& pairs) noexcept {
             keys->shrink();
         }
         known.immediate.shrink();
-        known.ignored.shrink([&](const ProxyPair& pair) { return !pairs.areAlive(pair); });
+        if (known.ignored != nullptr) {
+            known.ignored->shrink([&](const ProxyPair& pair) { return !pairs.areAlive(pair); });
+        }
         if (known.pile != nullptr) {
             freeArrays(known.pile->turned, known.pile->sampledAccepted);
             known.pile->sampled = {};

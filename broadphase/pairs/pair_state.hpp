@@ -178,8 +178,7 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT PairState {
     }
     /// Whether the filter decides.
     [[nodiscard]] bool mayAsk(PairKey key) const noexcept {
-        return mayPairNow(key) &&
-               (known.ignored.size() == 0 || !known.ignored.contains(pairOf(key)));
+        return mayPairNow(key) && (known.ignored == nullptr || !known.isIgnored(pairOf(key)));
     }
     /// At the last update.
     [[nodiscard]] bool couldPair(PairKey key) const noexcept {

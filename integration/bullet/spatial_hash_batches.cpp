@@ -154,7 +154,10 @@ private:
         };
         const auto moveOf = [&](std::size_t offset) {
             const Proxy& proxy = at(first + offset);
-            return detail::Move<btScalar>{proxy.id.index, toAabb(proxy.m_aabbMin, proxy.m_aabbMax)};
+            return proxy.margin == 0
+                       ? detail::Move<btScalar>{proxy.id.index,
+                                                toAabb(proxy.m_aabbMin, proxy.m_aabbMax)}
+                       : grownMove(proxy);
         };
         const bool areMany = last - first >= kWorthThreads;
         detail::MoveBatch<btScalar>(owner_.grid_.store())
@@ -164,6 +167,11 @@ private:
         for (std::size_t i = first; i < last && !owner_.seen_.empty(); ++i) {
             owner_.noteSeen(at(i), true);
         }
+    }
+
+    // With this inline, moveOf() would not be, which costs each box that is set.
+    [[HASHPHASE_NO_INLINE]] static detail::Move<btScalar> grownMove(const Proxy& proxy) {
+        return {proxy.id.index, grown(toAabb(proxy.m_aabbMin, proxy.m_aabbMax), proxy.margin)};
     }
 
     SpatialHashBroadphase& owner_;

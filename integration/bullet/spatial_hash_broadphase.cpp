@@ -124,6 +124,7 @@ SpatialHashBroadphase::Proxy& SpatialHashBroadphase::place(const btBroadphasePro
     proxy.m_uniqueId = ++lastUniqueId_;
     proxy.id = id;
     proxy.client = Client::unknown;
+    proxy.margin = 0;
     noteSeen(proxy, true);
     uniqueIds_[id.index] = proxy.m_uniqueId;
     return proxy;
@@ -160,14 +161,14 @@ void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& a
     if (own->id.isNull()) {  // destroyed before
         return;
     }
-    if (sweeps_ != nullptr || !areGroupsKnown(*own) ||
+    if ((mayGrow_ && (sweeps_ != nullptr || own->margin != 0)) || !areGroupsKnown(*own) ||
         !movesAlone(*own, aabbMin, aabbMax, dispatcher)) {
-        setAnyAabb(*own, aabbMin, aabbMax, dispatcher);
+        setAnyAabb(*own, aabbMin, aabbMax, own->margin, dispatcher);
         return;
     }
     if (!isSameBits(own->m_aabbMin, aabbMin) || !isSameBits(own->m_aabbMax, aabbMax)) {
         if (!grid_.store().moveIfInPlace(own->id.index, toAabb(aabbMin, aabbMax))) {
-            setAnyAabb(*own, aabbMin, aabbMax, dispatcher);
+            setAnyAabb(*own, aabbMin, aabbMax, own->margin, dispatcher);
             return;
         }
         own->m_aabbMin = aabbMin;
@@ -190,8 +191,12 @@ void SpatialHashBroadphase::move(const Proxy& proxy, const Aabb<btScalar>& box) 
 // The grid has the box that Bullet has handed in, which holds the body at start and end of the step, and
 // wherever it stops on its way: queries see it there. It is Bullet's choice whether it does.
 void SpatialHashBroadphase::moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box) {
-    const std::optional<detail::BodyMotion> motion =
+    std::optional<detail::BodyMotion> motion =
         hasNan(box) ? std::nullopt : detail::fastMotion(proxy, config_.fastFrom);
+    if (motion) {
+        motion->way.box = grown(motion->way.box, proxy.margin);
+        motion->bounds = grown(motion->bounds, proxy.margin);
+    }
     grid_.move(proxy.id, motion ? box.merged(motion->bounds) : box);
     sweeps_->set(proxy.id, motion ? motion->way : MovingBox<btScalar>{box}, config_.sweep);
 }
@@ -414,7 +419,7 @@ void SpatialHashBroadphase::removeDeferred(IsPair isPair, btDispatcher* dispatch
 
 bool SpatialHashBroadphase::doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const {
     if (sweeps_ == nullptr) {
-        return overlaps(toAabb(a.m_aabbMin, a.m_aabbMax), toAabb(b.m_aabbMin, b.m_aabbMax));
+        return overlaps(grid_.box(idOf(&a)), grid_.box(idOf(&b)));
     }
     return firstContact(sweeps_->motion(idOf(&a)), sweeps_->motion(idOf(&b))).has_value();
 }

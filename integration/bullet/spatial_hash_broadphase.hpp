@@ -93,14 +93,14 @@ public:
     /// with PairCache the number of the proxy's pairs.
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// Sets the proxy's box. Also notices that its group or mask has been written, even when the box has not
-    /// changed. Cost: O(1), or a comparison when the box has not changed, and with SpatialHashConfig::sweep a
-    /// look at the body; for ghosts and eagerGroups, and where the new box does not touch the last one, as
-    /// createProxy().
+    /// Sets the proxy's box. Where groups and masks decide (see SpatialHashConfig::filterRefusesMore), also
+    /// notices that they have been written, even when the box has not changed. Cost: O(1), or a comparison
+    /// when the box has not changed, and with SpatialHashConfig::sweep a look at the body; for ghosts and
+    /// eagerGroups, and where the new box does not touch the last one, as createProxy().
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
-    /// Returns the box last set, whether the proxy sweeps or not.
+    /// Returns the box last set, whether the proxy sweeps or not, without its margin.
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box (aabbMin, aabbMax),
@@ -137,7 +137,7 @@ public:
         return pairCache_;
     }
 
-    /// The box around all boxes; zero when there is none. Cost: O(proxies).
+    /// The box around all boxes and their margins; zero when there is none. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// When no proxy is alive, forgets all that came before: m_uniqueId counts from 1 again, and the next
@@ -201,6 +201,16 @@ public:
     /// refilter() for all proxies. Call it after a change of the filter callback, or of the data it reads.
     /// Cost: that of Pairs::refilterAll(), and of the pairs that come and go.
     void refilterAll(btDispatcher* dispatcher);
+
+    /// From now on takes the proxy's box grown by `margin` [m] on all sides, also on its way where it sweeps:
+    /// two are a pair when their boxes overlap, each grown by its own margin, and queries find the proxy by
+    /// the grown box. proxy->m_aabbMin and m_aabbMax, and getAabb(), stay the box that the program has set.
+    /// Counts from this call on, as setAabb() with the present box does: queries see it at once, ghosts and
+    /// eagerGroups have their pairs at once, others from the next calculateOverlappingPairs() on. A margin
+    /// that is negative, infinite or NaN is asserted, and changes nothing. A new proxy has a margin of 0.
+    /// Cost: as setAabb().
+    void setMargin(btBroadphaseProxy* proxy, btScalar margin, btDispatcher* dispatcher);
+    [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
 
     /// From now on the two are no pair, whatever groups, masks and the filter say: see Pairs::ignore(). A
     /// present pair goes at once, with its algorithm and contacts, and ghosts are told. Ends with
@@ -278,6 +288,7 @@ private:
         ProxyId id;
         Client client = Client::unknown;
         std::uint8_t kind = 0;  // of its groups, as the grid knows them, in groupKinds_
+        btScalar margin = 0;    // by which the grid's box is larger on each side [m]
     };
     struct PairLists;
     class Applying;
@@ -344,12 +355,13 @@ private:
     [[nodiscard]] std::vector<ProxyId> ghostsAt(const Proxy& proxy) const;
     void findPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
     void findGhostPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
-    // setAabb() where it may do more.
+    // setAabb() where it may do more, and setMargin().
     void setAnyAabb(Proxy& proxy, const btVector3& aabbMin, const btVector3& aabbMax,
-                    btDispatcher* dispatcher);
+                    btScalar margin, btDispatcher* dispatcher);
     // Whether a move finds no pairs at once: detail/lone_moves.inl.
     [[nodiscard]] bool movesAlone(const Proxy& proxy, const btVector3& aabbMin,
                                   const btVector3& aabbMax, const btDispatcher* dispatcher) const;
+    [[nodiscard]] static Aabb<btScalar> grown(const Aabb<btScalar>& box, btScalar margin);
     [[nodiscard]] std::size_t ghostCount() const noexcept;
     void move(const Proxy& proxy, const Aabb<btScalar>& box);
     void moveOnItsWay(const Proxy& proxy, const Aabb<btScalar>& box);
@@ -385,6 +397,7 @@ private:
     bool mustNoteGroups_ = false;          // of all
     bool isCacheBehind_ = false;           // of changes that did not all reach it
     bool isApplying_ = false;              // changes to the cache
+    bool mayGrow_ = sweeps_ != nullptr;    // the boxes of some, which sweep or have a margin
     std::unique_ptr<PairCache> ownCache_;  // if none was given
     detail::CacheWatch watch_;             // of the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;

@@ -12,6 +12,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -59,16 +60,18 @@ std::vector<ProxyId> SpatialHashBroadphase::ghostsAt(const Proxy& proxy) const {
 // --- A box where more than it may change ----------------------------------------------------------
 
 void SpatialHashBroadphase::setAnyAabb(Proxy& proxy, const btVector3& aabbMin,
-                                       const btVector3& aabbMax, btDispatcher* dispatcher) {
+                                       const btVector3& aabbMax, btScalar margin,
+                                       btDispatcher* dispatcher) {
     const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
     const Aabb<btScalar> before = toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
-    const bool isSame = isSameBits(before, box);
+    const bool isSame = isSameBits(before, box) && margin == proxy.margin;
     const bool jumps = !isSame && ghostCount() > 0 && !overlaps(before, box);
     // A body that flies back may have the same box as when it came.
     if (!isSame || sweeps_ != nullptr) {
         proxy.m_aabbMin = aabbMin;
         proxy.m_aabbMax = aabbMax;
-        move(proxy, box);
+        proxy.margin = margin;
+        move(proxy, grown(box, margin));
         changedKinds_ |= detail::GroupKinds::bit(proxy.kind);
     }
     const bool isRegrouped = !areGroupsKnown(proxy) && noteGroups(proxy);
@@ -80,6 +83,22 @@ void SpatialHashBroadphase::setAnyAabb(Proxy& proxy, const btVector3& aabbMin,
     } else if (jumps) {
         findGhostPairsNow(proxy, dispatcher);
     }
+}
+
+void SpatialHashBroadphase::setMargin(btBroadphaseProxy* proxy, btScalar margin,
+                                      btDispatcher* dispatcher) {
+    checkMayChange();
+    Proxy* const own = checkedProxy(proxy);
+    const bool isGood = margin >= 0 && margin <= std::numeric_limits<btScalar>::max();
+    HASHPHASE_ASSERT(isGood, "A margin is finite, and 0 or more.");
+    if (!own->id.isNull() && isGood) {
+        mayGrow_ = mayGrow_ || margin != 0;
+        setAnyAabb(*own, own->m_aabbMin, own->m_aabbMax, margin, dispatcher);
+    }
+}
+
+btScalar SpatialHashBroadphase::margin(const btBroadphaseProxy* proxy) const {
+    return checkedProxy(const_cast<btBroadphaseProxy*>(proxy))->margin;
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -69,6 +69,7 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
         seen_ = std::vector<std::uint64_t>();
         seenCount_ = 0;
         mustNoteGroups_ = false;
+        mayGrow_ = sweeps_ != nullptr;
         isCacheBehind_ = isCacheBehind_ && pairCache_->getNumOverlappingPairs() > 0;
     }
 }

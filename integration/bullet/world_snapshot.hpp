@@ -36,6 +36,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 class btActionInterface;
 class btDiscreteDynamicsWorld;
@@ -70,6 +71,21 @@ public:
     [[nodiscard]] std::string restore(btDiscreteDynamicsWorld& world,
                                       SpatialHashBroadphase& broadphase,
                                       const Returned& returned = {}) const;
+
+    /// Replaces what `bytes` held by the snapshot, to send or to keep. They begin with a version and a checksum.
+    /// Returns what cannot be written, in a sentence, and leaves `bytes` empty then; else nothing. Numbers are as this
+    /// processor, this Bullet and this compiler have them. Settings of the solver and of collision detection are
+    /// not written: both sides must have equal ones.
+    [[nodiscard]] std::string write(std::vector<std::byte>& bytes) const;
+
+    /// Takes what was written of a world with the same objects: each is the one whose proxy has the same unique id, as
+    /// have worlds that were made by equal calls; a joint is one of its type between its bodies, a character that of
+    /// its ghost. Those that are not in the world are handed over, in the order of the snapshot. Shapes are those that
+    /// objects have now. Returns what is wrong, in a sentence, and changes nothing then; else nothing: restore() puts
+    /// the world to what was read. Whatever the bytes, nothing worse comes of them than objects in odd places.
+    [[nodiscard]] std::string read(std::span<const std::byte> bytes, btDiscreteDynamicsWorld& world,
+                                   const SpatialHashBroadphase& broadphase,
+                                   const Returned& returned = {});
 
     /// Whether there is nothing to restore.
     [[nodiscard]] bool isEmpty() const noexcept;

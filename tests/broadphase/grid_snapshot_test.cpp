@@ -10,6 +10,7 @@
 #include <broadphase/sweeps.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/count_allocations.hpp>
+#include <tests/support/forged_bytes.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/oracles.hpp>
 #include <tests/support/out_of_memory.hpp>
@@ -17,6 +18,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -92,13 +95,18 @@ public:
     void update(Log& log) {
         if (pairs == nullptr) {
             const UpdateCost cost = grid.update();
-            log.insert(log.end(), {cost.changed, cost.filed, cost.resting, cost.largestCell});
+            if (notesCosts) {
+                log.insert(log.end(), {cost.changed, cost.filed, cost.resting, cost.largestCell});
+            }
             return;
         }
         note(log, pairs->update(filter()));
         const PairCost& cost = pairs->lastCost();
-        log.insert(log.end(), {cost.boxesTested, cost.pairsWatched, cost.grid.filed,
-                               cost.grid.resting, pairs->count(), pairs->refusedCount()});
+        log.push_back(pairs->count());
+        if (notesCosts) {
+            log.insert(log.end(), {cost.boxesTested, cost.pairsWatched, cost.grid.filed,
+                                   cost.grid.resting, pairs->refusedCount()});
+        }
         EXPECT_EQ(pairs->validate(), "");
         EXPECT_EQ(sweeps.validate(), "");
     }
@@ -177,7 +185,12 @@ private:
         const auto collect = [&](const auto& region) {
             std::vector<ProxyId> found;
             CollectAll all(found);
-            note(log, grid.visit(region, all));
+            const QueryCost cost = grid.visit(region, all);
+            if (notesCosts) {
+                note(log, cost);
+            } else {
+                std::sort(found.begin(), found.end());
+            }
             for (const ProxyId id : found) {  // in their order
                 note(log, id);
             }
@@ -194,7 +207,9 @@ private:
             const Vector3<double> to = random_.pointIn(-20, 20);
             collect(RayRegion<Scalar>(from.template cast<Scalar>(), to.template cast<Scalar>()));
         }
-        log.push_back(grid.filingCount());
+        if (notesCosts) {
+            log.push_back(grid.filingCount());
+        }
     }
 
     Play play_;
@@ -202,6 +217,7 @@ private:
     std::vector<ProxyId> ids_;
 
 public:
+    bool notesCosts = true;  // and the order in which queries find proxies
     Grid<Scalar> grid;
     Sweeps<Scalar> sweeps;
     std::unique_ptr<Pairs<Scalar>> pairs;
@@ -248,6 +264,41 @@ void expectTheSameAgain(const Play& play) {
     }
 }
 
+/// As bytes and back.
+template <class Scalar>
+[[nodiscard]] GridSnapshot<Scalar> sent(const GridSnapshot<Scalar>& snapshot) {
+    std::vector<std::byte> bytes;
+    snapshot.write(bytes);
+    GridSnapshot<Scalar> received;
+    EXPECT_EQ(received.read(bytes), "");
+    std::vector<std::byte> again;
+    received.write(again);
+    EXPECT_EQ(bytes, again);
+    return received;
+}
+
+// Costs, and the order in which queries find proxies, are not sent.
+template <class Scalar>
+void expectTheSameWhereItIsSent(const Play& play) {
+    World<Scalar> world(play, 7);
+    World<Scalar> elsewhere(play, 8);
+    Log log;
+    world.notesCosts = elsewhere.notesCosts = false;
+    world.play(1, 30, log);
+    for (std::uint64_t round = 0; round < 24; ++round) {
+        SCOPED_TRACE(round);
+        typename World<Scalar>::Saved saved;
+        world.save(saved);
+        saved.snapshot = sent(saved.snapshot);
+        elsewhere.restore(saved);
+        Log here;
+        Log there;
+        world.play(100 + round, 1 + static_cast<int>(round % 12), here);
+        elsewhere.play(100 + round, 1 + static_cast<int>(round % 12), there);
+        ASSERT_EQ(here, there);
+    }
+}
+
 class GridSnapshotPlays : public testing::TestWithParam<Play> {};
 
 TEST_P(GridSnapshotPlays, HaveTheSameResultsAgainInSinglePrecision) {
@@ -255,6 +306,12 @@ TEST_P(GridSnapshotPlays, HaveTheSameResultsAgainInSinglePrecision) {
 }
 TEST_P(GridSnapshotPlays, HaveTheSameResultsAgainInDoublePrecision) {
     expectTheSameAgain<double>(GetParam());
+}
+TEST_P(GridSnapshotPlays, HaveTheSameResultsWhereTheyAreSentInSinglePrecision) {
+    expectTheSameWhereItIsSent<float>(GetParam());
+}
+TEST_P(GridSnapshotPlays, HaveTheSameResultsWhereTheyAreSentInDoublePrecision) {
+    expectTheSameWhereItIsSent<double>(GetParam());
 }
 INSTANTIATE_TEST_SUITE_P(All, GridSnapshotPlays, testing::ValuesIn(plays()),
                          [](const auto& play) { return play.param.name; });
@@ -381,6 +438,71 @@ TEST(GridSnapshot, PutsWhatWasSavedIntoAnotherGrid) {
     other.play(3, 10, ofOther);
     EXPECT_EQ(ofOne, ofOther);
     EXPECT_NE(one.grid.populationNumber(), other.grid.populationNumber());
+}
+
+TEST(GridSnapshot, RefusesBytesThatAreTornOrChanged) {
+    BetweenTwoStates between;
+    std::vector<std::byte> bytes;
+    between.before.snapshot.write(bytes);
+    GridSnapshot<float> snapshot;
+    EXPECT_EQ(snapshot.read({}), "The bytes are not a snapshot of a grid.");
+    std::vector<std::byte> other = bytes;
+    other.pop_back();
+    EXPECT_NE(snapshot.read(other).find("were written"), std::string::npos);
+    other = bytes;
+    other[bytes.size() / 2] ^= std::byte{1};
+    EXPECT_EQ(snapshot.read(other),
+              "The bytes of a snapshot of a grid have changed: their checksum is wrong.");
+    other = bytes;
+    other[8] = std::byte{9};
+    EXPECT_EQ(snapshot.read(other),
+              "The bytes are a snapshot of a grid of version 9; this "
+              "library reads version 1.");
+    GridSnapshot<double> ofDouble;
+    EXPECT_EQ(ofDouble.read(bytes), "The bytes are a snapshot of a grid of the other precision.");
+    EXPECT_TRUE(snapshot.isEmpty());
+    EXPECT_EQ(snapshot.read(bytes), "");
+}
+
+TEST(GridSnapshot, IsSoundOrRefusedWhateverItsBytesAre) {
+    const CaughtMessages messages;
+    Random random(11);
+    int read = 0;
+    for (const Play& play : plays()) {
+        World<float> world(play, 3);
+        Log log;
+        world.notesCosts = false;
+        world.play(1, 20, log);
+        World<float>::Saved saved;
+        world.save(saved);
+        std::vector<std::byte> bytes;
+        saved.snapshot.write(bytes);
+        for (int i = 0; i < 400; ++i) {
+            GridSnapshot<float> snapshot;
+            std::vector<std::byte> forged = bytes;
+            forgeBytes(forged, random);
+            if (snapshot.read(forged).empty()) {
+                World<float> other({play.name, 0, play.moving, play.step, play.extent, play.refused,
+                                    0, 0, play.hasPairs, true, play.config},
+                                   1);
+                const bool fits = play.hasPairs ? snapshot.faultFor(*other.pairs).empty()
+                                                : snapshot.faultFor(other.grid).empty();
+                if (!fits) {
+                    continue;
+                }
+                ++read;
+                if (play.hasPairs) {
+                    snapshot.restore(*other.pairs);
+                } else {
+                    snapshot.restore(other.grid);
+                }
+                EXPECT_EQ(other.grid.validate(), "");
+                other.update(log);  // and validates
+                other.update(log);
+            }
+        }
+    }
+    EXPECT_GT(read, 100);
 }
 
 TEST(GridSnapshot, KeptAnswersAreOutOfDateAfterIt) {

@@ -155,7 +155,7 @@ public:
             for (std::size_t k = 0; k < i; ++k) {
                 btBroadphaseProxy* const a = proxyOf(boxes[i].id);
                 btBroadphaseProxy* const b = proxyOf(boxes[k].id);
-                if (overlap(boxOf(boxes[i].box), boxOf(boxes[k].box)) &&
+                if (overlap(grown(boxes[i]), grown(boxes[k])) &&
                     !ignored.contains(std::minmax({objectOf(a), objectOf(b)})) &&
                     (filter.divisor != 0 ? filter.needBroadphaseCollision(a, b)
                                          : groupsCollide(*a, *b))) {
@@ -165,6 +165,21 @@ public:
         }
         std::sort(pairs.begin(), pairs.end());
         return pairs;
+    }
+
+    /// Boxes with their margins, of which queries are answered.
+    [[nodiscard]] std::vector<Placed<btScalar>> grown(
+        std::span<const Placed<btScalar>> boxes) const {
+        std::vector<Placed<btScalar>> all(boxes.begin(), boxes.end());
+        for (Placed<btScalar>& each : all) {
+            const Box box = grown(each);
+            each.box = toAabb(box.min, box.max);
+        }
+        return all;
+    }
+    [[nodiscard]] Box grown(const Placed<btScalar>& placed) const {
+        const Box box = boxOf(placed.box);
+        return hash_ != nullptr ? grownBy(box, hash_->margin(proxyOf(placed.id))) : box;
     }
 
     PairJournal journal;

@@ -72,22 +72,48 @@ TEST_F(BulletPage, PairsAreIgnored) {
     world.removeRigidBody(&other);
 }
 
+struct NearestPoint : btCollisionWorld::ContactResultCallback {
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+        found.push_back(point.getDistance());
+        return 0;
+    }
+    static inline std::vector<btScalar> found;
+};
+
+TEST_F(BulletPage, MarginsFindWhatIsNear) {
+    FallingSphere another;
+    another.body.setCenterOfMassTransform(
+        btTransform(btQuaternion(0, 0, 0, 1), {btScalar(2.125), 0, 0}));
+    world.addRigidBody(&another.body);
+    world.performDiscreteCollisionDetection();
+    btBroadphaseProxy* const gripper = body.getBroadphaseProxy();
+    btOverlappingPairCache& cache = *broadphase.getOverlappingPairCache();
+    EXPECT_EQ(cache.getNumOverlappingPairs(), 0);
+    NearestPoint::found.clear();
+    const std::vector<btBroadphasePair> neighbours{{*gripper, *another.body.getBroadphaseProxy()}};
+#include <bullet_7.inl>
+    EXPECT_EQ(cache.getNumOverlappingPairs(), 1);
+    EXPECT_EQ(NearestPoint::found, std::vector{btScalar(0.125)});
+    world.removeRigidBody(&another.body);
+}
+
 TEST_F(BulletPage, EmptyWorldIsReset) {
     world.removeRigidBody(&body);
-#include <bullet_7.inl>
+#include <bullet_8.inl>
     world.addRigidBody(&body);
     EXPECT_EQ(body.getBroadphaseProxy()->getUid(), 1);
 }
 
 TEST_F(BulletPage, OriginIsShifted) {
     btVector3 myCamera(0, 2, 0);
-#include <bullet_8.inl>
+#include <bullet_9.inl>
     EXPECT_EQ(body.getWorldTransform().getOrigin().x(), -1024);
     EXPECT_EQ(myCamera, btVector3(-1024, 2, 0));
 }
 
 TEST(BulletPageAlone, CacheOfYoursIsUsed) {
-#include <bullet_9.inl>
+#include <bullet_10.inl>
     EXPECT_EQ(broadphase.getOverlappingPairCache(), &pairCache);
 }
 

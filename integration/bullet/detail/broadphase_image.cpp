@@ -25,6 +25,7 @@ void BroadphaseImage::forEachKept(auto& broadphase, auto& image, const Visit& vi
     visit(broadphase.seen_, image.seen_);
     visit(broadphase.seenCount_, image.seenCount_);
     visit(broadphase.ghosts_, image.ghosts_);
+    visit(broadphase.mayGrow_, image.mayGrow_);
     visit(broadphase.watch_.isMoreTakenOut, image.isMoreTakenOut_);
 }
 

@@ -12,6 +12,15 @@ inline std::size_t SpatialHashBroadphase::ghostCount() const noexcept {
     return ghosts_ != nullptr ? ghosts_->size() : 0;
 }
 
+// A margin of 0 changes no bit, not even that of a negative zero.
+inline Aabb<btScalar> SpatialHashBroadphase::grown(const Aabb<btScalar>& box, btScalar margin) {
+    if (margin == 0) {
+        return box;
+    }
+    const Vector3<btScalar> by = Vector3<btScalar>::Constant(margin);
+    return {box.min() - by, box.max() + by};
+}
+
 // Mostly they are what they were: then this is but a comparison.
 inline bool SpatialHashBroadphase::areGroupsKnown(const Proxy& proxy) const noexcept {
     return !groupsDecide_ ||

@@ -39,6 +39,12 @@ struct Box {
     return {toBullet(box.min()), toBullet(box.max())};
 }
 
+/// With a margin on all sides.
+[[nodiscard]] inline Box grownBy(const Box& box, btScalar margin) {
+    const btVector3 by(margin, margin, margin);
+    return {box.min - by, box.max + by};
+}
+
 /// The predicate that decides every pair: closed, and false for NaN.
 [[nodiscard]] inline bool overlap(const Box& a, const Box& b) {
     const auto isBelow = [](const btVector3& low, const btVector3& high) {

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -22,6 +23,7 @@ namespace {
 #if HASHPHASE_ENABLE_ASSERTS
 
 const Box kThisPlace = boxAround({0, 0, 0}, {1, 1, 1});
+constexpr btScalar kInfinity = std::numeric_limits<btScalar>::infinity();
 
 struct Misuse {
     const char* sentence;  // a part of the assertion's
@@ -115,6 +117,11 @@ TEST(BroadphaseMisuse, IsAsserted) {
          {gone, [&] { broadphase.ignorePair(alive, dead, nullptr); }},
          {gone, [&] { broadphase.stopIgnoringPair(dead, alive, nullptr); }},
          {gone, [&] { broadphase.collisionChecksChanged(dead, nullptr); }},
+         {gone, [&] { broadphase.setMargin(dead, 1, nullptr); }},
+         {gone, [&] { static_cast<void>(broadphase.margin(nullptr)); }},
+         {"is finite", [&] { broadphase.setMargin(alive, btScalar(-0.1), nullptr); }},
+         {"is finite", [&] { broadphase.setMargin(alive, kInfinity, nullptr); }},
+         {"is finite", [&] { broadphase.setMargin(alive, kInfinity - kInfinity, nullptr); }},
          {"by another one", [&] { broadphase.ignorePair(alive, alive, nullptr); }},
          {"", [&] { broadphase.getAabb(dead, box.min, box.max); }},
          {"", [&] { broadphase.getAabb(nullptr, box.min, box.max); }},
@@ -171,6 +178,9 @@ TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveChangesNobodyWithoutAssertions) {
     boxes.broadphase.ignorePair(boxes.proxies[0], dead, nullptr);
     boxes.broadphase.ignorePair(boxes.proxies[0], boxes.proxies[0], nullptr);
     boxes.broadphase.collisionChecksChanged(dead, nullptr);
+    boxes.broadphase.setMargin(dead, 9, nullptr);
+    boxes.broadphase.setMargin(boxes.proxies[0], -1, nullptr);
+    EXPECT_EQ(boxes.broadphase.margin(boxes.proxies[0]), 0);
     EXPECT_EQ(boxes.broadphase.proxyOf(deadId), nullptr);
     EXPECT_EQ(boxes.broadphase.proxyOf(ProxyId{}), nullptr);
     boxes.check();
@@ -178,7 +188,7 @@ TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveChangesNobodyWithoutAssertions) {
     for (const btBroadphaseProxy* alive : boxes.proxies) {
         EXPECT_TRUE(isSame(boxOf(*alive), place));
     }
-    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 8 : 0);
+    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 10 : 0);
 }
 
 TEST(BroadphaseMisuse, OfProxiesThatAreNotAliveInABatchChangesNobodyWithoutAssertions) {

@@ -28,12 +28,14 @@ struct MovedKind {
     Sweep sweep = Sweep::none;
     bool doCallbacksMove = false;  // what pairs are told to moves other proxies
     bool areGroupsWritten = false;
+    bool haveMargins = false;
 };
 
 constexpr MovedKind kMovedKinds[] = {
     {"bodies"},
     {.name = "ghosts", .ghostCount = 40},
     {.name = "groups", .areGroupsWritten = true},
+    {.name = "margins", .ghostCount = 10, .haveMargins = true},
     {.name = "eager", .eagerGroups = btBroadphaseProxy::SensorTrigger},
     {.name = "sweep", .sweep = Sweep::automatic},
     {.name = "busy callbacks", .ghostCount = 5, .doCallbacksMove = true}};
@@ -63,6 +65,9 @@ public:
                                                         btBroadphaseProxy::AllFilter,
                                                         &dispatcher_));
             boxes_.proxies.push_back(proxies.back());
+            if (kind.haveMargins && i % 4 == 1) {
+                boxes_.hash().setMargin(proxies.back(), btScalar(i % 7) / 10, &dispatcher_);
+            }
         }
     }
 

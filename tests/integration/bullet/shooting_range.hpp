@@ -82,6 +82,9 @@ struct ShootingRange : DynamicsWorld {
             motions.push_back(motion
                                   ? motion->way
                                   : MovingBox<btScalar>{toAabb(proxy.m_aabbMin, proxy.m_aabbMax)});
+            const Vector3<btScalar> margin = Vector3<btScalar>::Constant(hash().margin(&proxy));
+            Aabb<btScalar>& box = motions.back().box;
+            box = {box.min() - margin, box.max() + margin};
         }
         std::set<Uids> expected;
         for (int i = 0; i < bodyCount(); ++i) {
