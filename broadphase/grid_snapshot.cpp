@@ -178,6 +178,18 @@ std::string GridSnapshot<Scalar>::read(std::span<const std::byte> bytes) {
 }
 
 template <class Scalar>
+std::uint32_t GridSnapshot<Scalar>::indexLimit() const noexcept {
+    return isEmpty() ? 0 : static_cast<std::uint32_t>(twin_->store.proxies.records.size());
+}
+
+template <class Scalar>
+ProxyId GridSnapshot<Scalar>::idAt(std::uint32_t index) const noexcept {
+    return index < indexLimit() && twin_->store.proxies.isAlive(index)
+               ? twin_->store.proxies.idOf(index)
+               : ProxyId{};
+}
+
+template <class Scalar>
 std::size_t GridSnapshot<Scalar>::memoryBytes() const noexcept {
     return sizeof(*this) + (twin_ == nullptr ? 0
                                              : sizeof(*twin_) + twin_->store.memoryBytes() +

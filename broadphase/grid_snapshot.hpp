@@ -27,6 +27,7 @@
 #include <broadphase/pairs.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -79,6 +80,11 @@ public:
     /// which proxies rest, and so neither costs nor the order in which queries find proxies.
     /// Cost: O(what is saved), and finding all pairs from scratch.
     [[nodiscard]] std::string read(std::span<const std::byte> bytes);
+
+    /// The proxy that had this index; null where none had. Cost: O(1).
+    [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept;
+    /// Grid::indexLimit() of the grid that was saved; 0 where none was.
+    [[nodiscard]] std::uint32_t indexLimit() const noexcept;
 
     /// Whether there is nothing to restore.
     [[nodiscard]] bool isEmpty() const noexcept { return twin_ == nullptr || !isSaved_; }

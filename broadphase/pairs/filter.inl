@@ -18,7 +18,7 @@ namespace hashphase::detail {
 template <class Scalar>
 void listRefusedAgain(PairState<Scalar>& pairs) {
     KnownPairs& known = pairs.known;
-    std::vector<PairKey>& rested = pairs.call.rested;
+    std::vector<PairKey>& rested = pairs.call.setAside;
     rested.clear();
     for (const PairKey key : known.refused.keys()) {
         if (!pairs.mayPairNow(key)) {

@@ -271,7 +271,11 @@ private:
         if (count > from_.left() / (2 * sizeof(ProxyId))) {
             return false;
         }
-        IgnoredPairs& ignored = twin_->pairs.known.ignored;
+        if (count == 0) {
+            return true;
+        }
+        twin_->pairs.known.ignored = std::make_unique<IgnoredPairs>();
+        IgnoredPairs& ignored = *twin_->pairs.known.ignored;
         const Population<Scalar>& proxies = twin_->store.proxies;
         const auto readId = [&] {
             const auto index = from_.read<std::uint32_t>();

@@ -112,8 +112,10 @@ private:
             to_.write(known.pile->lookInterval);
             to_.write(known.pile->updatesUntilLook);
         }
-        to_.write(static_cast<std::uint32_t>(known.ignored.size()));
-        for (const ProxyPair& pair : known.ignored.pairs()) {
+        const auto ignored =
+            known.ignored != nullptr ? known.ignored->pairs() : std::span<const ProxyPair>();
+        to_.write(static_cast<std::uint32_t>(ignored.size()));
+        for (const ProxyPair& pair : ignored) {
             for (const ProxyId id : {pair.first, pair.second}) {
                 to_.write(id.index);
                 to_.write(id.generation);

@@ -26,9 +26,9 @@ void findImmediateOfRemoved(PairState<Scalar>& pairs) {
     if (!areManyImmediate(pairs)) {
         return;
     }
-    pairs.call.stillImmediate.clear();
+    pairs.call.setAside.clear();
     for (const PairKey key : pairs.known.immediate.keys()) {
-        (pairs.areAlive(key) ? pairs.call.stillImmediate : pairs.call.ended).push_back(key);
+        (pairs.areAlive(key) ? pairs.call.setAside : pairs.call.ended).push_back(key);
     }
 }
 
@@ -40,7 +40,7 @@ void endImmediateOfRemoved(PairState<Scalar>& pairs) noexcept {
     PairKeySet& immediate = pairs.known.immediate;
     pairs.markImmediate(immediate.keys(), false);
     immediate.clear();
-    for (const PairKey key : pairs.call.stillImmediate) {
+    for (const PairKey key : pairs.call.setAside) {
         immediate.insert(key);
     }
     pairs.markImmediate(immediate.keys(), true);

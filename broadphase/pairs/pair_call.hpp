@@ -29,10 +29,9 @@ struct PairCall {
 
     // Scratch.
     std::vector<ProxyPair> askedPairs;
-    std::vector<PairKey> rested;
     std::vector<PairKey> stillEnded;
     std::vector<PairKey> stillBegun;
-    std::vector<PairKey> stillImmediate;
+    std::vector<PairKey> setAside;  // by an update what rests, by other calls what stays immediate
     std::vector<PairKey> sorted;
 
     void clear() noexcept {
@@ -43,13 +42,13 @@ struct PairCall {
     }
     void releaseMemory() noexcept {
         freeArrays(ended, asked, standing, accepted, begun, died, keptNow, notKept, lapsed,
-                   immediate, askedPairs, rested, stillEnded, stillBegun, stillImmediate, sorted);
+                   immediate, askedPairs, stillEnded, stillBegun, setAside, sorted);
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         std::size_t bytes = accepted.capacity() + askedPairs.capacity() * sizeof(ProxyPair);
         for (const std::vector<PairKey>* keys :
              {&ended, &asked, &standing, &begun, &died, &keptNow, &notKept, &lapsed, &immediate,
-              &rested, &stillEnded, &stillBegun, &stillImmediate, &sorted}) {
+              &stillEnded, &stillBegun, &setAside, &sorted}) {
             bytes += keys->capacity() * sizeof(PairKey);
         }
         return bytes;

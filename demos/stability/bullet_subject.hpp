@@ -73,7 +73,9 @@ template <class ObjectOf>
     return pairs;
 }
 
-/// Bodies in a world; in bulletCases() beside questions and changes within questions.
+/// Bodies in a world, and worlds that go back in time; in bulletCases() beside questions and
+/// changes within questions.
 [[nodiscard]] std::span<const HardCase> bodyCases();
+[[nodiscard]] std::span<const HardCase> worldRollbackCases();
 
 }  // namespace hashphase::demos

@@ -80,13 +80,13 @@ struct HardCase {
 [[nodiscard]] std::vector<HardCase> inOrder(
     std::initializer_list<std::span<const HardCase>> groups);
 
-/// Of any subject: numbers, borders, rays, sweeps, sizes, crowds, views.
+/// Of any subject: numbers, borders, rays, sweeps, sizes, crowds, views, going back.
 [[nodiscard]] std::span<const HardCase> gridCases();
 
 /// Of broadphases by Bullet's interface, in its precision: bodies, and callbacks that ask and change.
 [[nodiscard]] std::span<const HardCase> bulletCases();
 
-/// H1 to H45, in that order: both.
+/// H1 to H48, in that order: both.
 [[nodiscard]] std::span<const HardCase> hardCases();
 
 /// Whether the outcome is as required.

@@ -9,6 +9,8 @@
 // Grid      The grid holds the bodies; zones are not filed in it. Give update() the same grid always, or
 //           another one after forgetOccupants(). After a Grid::shiftOrigin(), set() every zone where it is
 //           now before the next update(): then its occupants stay.
+// Rollback  A copy is a snapshot, occupants included: assign it together with GridSnapshot::restore(), and the
+//           next update() tells what it told the first time. Spans that were handed out are void then.
 // Threads   update(), add(), set() and remove() need this object for themselves; update() reads the grid, as
 //           queries do. All else is const and may be called from any number of threads.
 // Failure   Where memory runs out, or a filter throws, nothing has happened: the next update() tells what

@@ -49,6 +49,25 @@ std::string WorldSnapshot::restore(btDiscreteDynamicsWorld& world,
     return fault;
 }
 
+std::string WorldSnapshot::write(std::vector<std::byte>& bytes) const {
+    bytes.clear();
+    return isEmpty() ? "Nothing was saved that could be written." : image_->write(bytes);
+}
+
+std::string WorldSnapshot::read(std::span<const std::byte> bytes, btDiscreteDynamicsWorld& world,
+                                const SpatialHashBroadphase& broadphase, const Returned& returned) {
+    std::string fault = detail::WorldImage::faultOf(world, broadphase);
+    auto image = std::make_unique<Image>();
+    if (fault.empty()) {
+        fault = image->read(bytes, world, broadphase, returned);
+    }
+    if (fault.empty()) {
+        image_ = std::move(image);
+        image_->isSaved = true;
+    }
+    return fault;
+}
+
 bool WorldSnapshot::isEmpty() const noexcept {
     return image_ == nullptr || !image_->isSaved;
 }

@@ -13,8 +13,9 @@
 //           activation, whom they ignore. Contacts with their impulses, and the order of pairs and contacts.
 //           Joints with their motors, limits and impulses. Ghosts and characters. Gravity, the solver's settings
 //           and its seed, the time that is left of a step. The broadphase, its grid, pairs and sweeps.
-// What is not  What is the program's: user pointers and indices, motion states, joint feedback, debug colours, fields
-//           of classes derived from Bullet's. Shapes: only which one an object has.
+// What is not  What is the program's: user pointers and indices, joint feedback, debug colours, fields of classes
+//           derived from Bullet's. Motion states are told where their bodies are. Shapes: only which one an object
+//           has.
 // Refused   by a sentence that names it: soft bodies, multibodies, actions other than btKinematicCharacterController
 //           (btRaycastVehicle is one), pair caches other than PairCache, contact points with user data, solvers
 //           other than btSequentialImpulseConstraintSolver and those derived from it, joints of unknown types.
@@ -36,6 +37,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 class btActionInterface;
 class btDiscreteDynamicsWorld;
@@ -70,6 +72,21 @@ public:
     [[nodiscard]] std::string restore(btDiscreteDynamicsWorld& world,
                                       SpatialHashBroadphase& broadphase,
                                       const Returned& returned = {}) const;
+
+    /// Replaces what `bytes` held by the snapshot, to send or to keep. They begin with a version and a checksum.
+    /// Returns what cannot be written, in a sentence, and leaves `bytes` empty then; else nothing. Numbers are as this
+    /// processor, this Bullet and this compiler have them. Settings of the solver and of collision detection are
+    /// not written: both sides must have equal ones.
+    [[nodiscard]] std::string write(std::vector<std::byte>& bytes) const;
+
+    /// Takes what was written of a world with the same objects: each is the one whose proxy has the same unique id, as
+    /// have worlds that were made by equal calls; a joint is one of its type between its bodies, a character that of
+    /// its ghost. Those that are not in the world are handed over, in the order of the snapshot. Shapes are those that
+    /// objects have now. Returns what is wrong, in a sentence, and changes nothing then; else nothing: restore() puts
+    /// the world to what was read. Whatever the bytes, nothing worse comes of them than objects in odd places.
+    [[nodiscard]] std::string read(std::span<const std::byte> bytes, btDiscreteDynamicsWorld& world,
+                                   const SpatialHashBroadphase& broadphase,
+                                   const Returned& returned = {});
 
     /// Whether there is nothing to restore.
     [[nodiscard]] bool isEmpty() const noexcept;

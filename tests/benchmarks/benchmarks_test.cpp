@@ -235,6 +235,13 @@ TEST(EffectsOverhead, IsTheRatioToTheFrameByHandAndHasBounds) {
               "declared 1.01 1.01 1; nobody 1.1 1.02 0; by-hand-again 1 - -");
 }
 
+TEST(SnapshotShares, AreTheMediansOfTheRatiosToTheFrameItself) {
+    Measurements measured = measuredFrames(
+        "snapshots", {{"frame", {1, 2, 4}}, {"save", {0.1, 0.1, 0.2}}, {"restore", {1, 1, 1}}});
+    EXPECT_NE(summaryOf(measured).find("5.00 %"), std::string::npos);
+    EXPECT_EQ(asked(measured, "SELECT name, share FROM shares"), "save 0.05; restore 0.5");
+}
+
 // --- The program ----------------------------------------------------------------------------------
 
 struct Outcome {
@@ -306,6 +313,10 @@ TEST(Benchmarks, MeasureAndCheckEveryCaseAndWriteItDown) {
             EXPECT_EQ(result["effectsOverheads"].size(), 3U) << name;
             EXPECT_GT(result["effectsOverheads"][0]["ratio"]["median"], 0) << name;
             EXPECT_EQ(result["effectsOverheads"][0]["bound"], 1.01) << name;
+        } else if (result["group"] == "snapshots") {
+            EXPECT_EQ(result["contestants"][0]["name"], "frame") << name;
+            EXPECT_EQ(result["snapshotShares"].size(), 2U) << name;
+            EXPECT_GT(result["snapshotShares"][1]["share"]["median"], 0) << name;
         } else {
             EXPECT_EQ(result["contestants"][0]["name"], "hash") << name;
             EXPECT_GT(result["contestants"][0]["speedAgainstDbvt"], 0) << name;

@@ -25,6 +25,17 @@ FROM did JOIN cases ON cases.rowid = did."case" AND "group" = 'effects'
      JOIN frames AS hand ON hand.contestant = by_hand.contestant AND hand.frame = own.frame
 WHERE did.name <> 'by-hand' GROUP BY did.contestant;
 
+-- What saving and going back take beside the frame, in the same frame.
+CREATE TABLE shares AS
+SELECT did."case", did.contestant, did.name, did.frames, did.ms, median(own.ms / frame.ms) AS share,
+       percentile(own.ms / frame.ms, 0.05) AS low, percentile(own.ms / frame.ms, 0.95) AS high,
+       did.own_for_objects AS bytes
+FROM did JOIN cases ON cases.rowid = did."case" AND "group" = 'snapshots'
+     JOIN did AS whole ON whole."case" = did."case" AND whole.name = 'frame'
+     JOIN frames AS own ON own.contestant = did.contestant
+     JOIN frames AS frame ON frame.contestant = whole.contestant AND frame.frame = own.frame
+WHERE did.name <> 'frame' GROUP BY did.contestant;
+
 -- Schema "hashphase-benchmarks", case by case; what was not measured is null.
 CREATE VIEW case_json AS
 SELECT json_object(
@@ -39,6 +50,10 @@ SELECT json_object(
             'contestant', name, 'ratio', json_object('median', ratio, 'p5', low, 'p95', high),
             'bound', bound, 'holds', json(iif(ratio > bound, 'false', 'true'))))
         FROM overheads WHERE overheads."case" = outcomes."case")),
+    'snapshotShares', json((
+        SELECT json_group_array(json_object(
+            'contestant', name, 'share', json_object('median', share, 'p5', low, 'p95', high)))
+        FROM shares WHERE shares."case" = outcomes."case")),
     'contestants', json((
         SELECT json_group_array(json_object(
             'name', name, 'title', title, 'package', package, 'ours', json(iif(ours, 'true', 'false')),
@@ -61,7 +76,7 @@ FROM outcomes;
 CREATE TABLE others AS  -- the fastest of those that are not ours, in each case
 SELECT *, min(ms) FROM did WHERE NOT ours AND ms IS NOT NULL GROUP BY "case";
 
--- Cell sizes and effects have tables of their own; among the sweeps, `hash` is told nothing of the motions.
+-- Cell sizes, effects and snapshots have tables of their own; among the sweeps, `hash` is told nothing of the motions.
 /* {"print": "How many times faster than each: the median over the frames of the ratio of both times in the same frame."} */
 SELECT "case", exact, "hash ns", iif(dbvt IS NULL, '-', fixed(dbvt, iif(dbvt < 10, 2, 1)) || 'x') AS "hash / dbvt",
        iif(grid IS NULL, '-', fixed(grid, iif(grid < 10, 2, 1)) || 'x') AS "grid / dbvt", "fastest other",
@@ -75,7 +90,7 @@ FROM (SELECT outcomes.name AS "case", iif(ours_exact, 'yes', 'NO') AS exact,
       FROM outcomes LEFT JOIN did AS hash ON hash."case" = outcomes."case" AND hash.name = 'hash'
            LEFT JOIN did AS grid ON grid."case" = outcomes."case" AND grid.name = 'grid'
            LEFT JOIN others ON others."case" = outcomes."case"
-      WHERE outcomes."group" NOT IN ('cell size', 'effects') AND coalesce(hash.ours, 1));
+      WHERE outcomes."group" NOT IN ('cell size', 'effects', 'snapshots') AND coalesce(hash.ours, 1));
 
 /* {"print": "Cell sizes, fixed ones in mean edges. Regret: how much longer the automatic ones took than the best fixed one."} */
 SELECT name AS "case", ms * 1e6 / operations AS "automatic ns", best AS "best fixed",
@@ -87,6 +102,12 @@ SELECT cases.name AS "case", overheads.name AS contestant, frames, fixed(ratio, 
        fixed(low, 4) AS "5 %", fixed(high, 4) AS "95 %", fixed(bound, 2) AS bound,
        CASE WHEN bound IS NULL THEN '-' WHEN ratio <= bound THEN 'yes' ELSE 'NO' END AS holds
 FROM overheads JOIN cases ON cases.rowid = "case";
+
+/* {"print": "Snapshots: what saving and going back take of the frame itself, the median over the frames and the 5th and 95th percentile."} */
+SELECT cases.name AS "case", shares.name AS contestant, frames, ms(ms) AS ms, fixed(100 * share, 2) || ' %' AS share,
+       fixed(100 * low, 2) || ' %' AS "5 %", fixed(100 * high, 2) || ' %' AS "95 %",
+       fixed(1.0 * bytes / objects, 0) AS "bytes an object"
+FROM shares JOIN cases ON cases.rowid = "case";
 
 /* {"conclusions": "of all random scenes"} */
 SELECT 'Random scenes: hash was ' || fixed(median(speed), iif(median(speed) < 10, 2, 1))

@@ -169,6 +169,7 @@ struct Benchmark {
 [[nodiscard]] std::vector<Benchmark> sweepBenchmarks();
 [[nodiscard]] std::vector<Benchmark> terrainBenchmarks();
 [[nodiscard]] std::vector<Benchmark> effectsBenchmarks();
+[[nodiscard]] std::vector<Benchmark> snapshotBenchmarks();
 
 /// True for contestants that are not too slow for so many objects.
 [[nodiscard]] bool isFastEnough(const ContestantKind& kind, std::size_t objects);

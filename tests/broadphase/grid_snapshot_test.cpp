@@ -6,11 +6,11 @@
 #include <broadphase/grid_snapshot.hpp>
 
 #include <broadphase/collectors.hpp>
-#include <broadphase/core/sealed_bytes.hpp>
 #include <broadphase/regions.hpp>
 #include <broadphase/sweeps.hpp>
 #include <tests/support/box_scenes.hpp>
 #include <tests/support/count_allocations.hpp>
+#include <tests/support/forged_bytes.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/oracles.hpp>
 #include <tests/support/out_of_memory.hpp>
@@ -21,9 +21,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -466,35 +464,6 @@ TEST(GridSnapshot, RefusesBytesThatAreTornOrChanged) {
     EXPECT_EQ(snapshot.read(bytes), "");
 }
 
-/// Bytes with a right checksum, whatever is in them.
-std::vector<std::byte> forged(std::vector<std::byte> bytes, Random& random) {
-    constexpr std::size_t kHead = 28;
-    for (std::uint32_t i = 1 + random.below(4); i-- > 0;) {
-        const std::size_t at =
-            kHead + random.below(static_cast<std::uint32_t>(bytes.size() - kHead));
-        switch (random.below(4)) {
-            case 0:
-                bytes[at] ^= static_cast<std::byte>(1U << random.below(8));
-                break;
-            case 1:
-                bytes[at] = static_cast<std::byte>(random.below(256));
-                break;
-            case 2:
-                bytes[at] = std::byte{0xff};
-                break;
-            default:
-                bytes.resize(std::max<std::size_t>(kHead + 1, at));
-                break;
-        }
-    }
-    const std::span<const std::byte> content = std::span(bytes).subspan(kHead);
-    const std::uint64_t size = content.size();
-    const std::uint64_t sum = detail::checksum(content);
-    std::memcpy(bytes.data() + 12, &size, sizeof(size));
-    std::memcpy(bytes.data() + 20, &sum, sizeof(sum));
-    return bytes;
-}
-
 TEST(GridSnapshot, IsSoundOrRefusedWhateverItsBytesAre) {
     const CaughtMessages messages;
     Random random(11);
@@ -510,7 +479,9 @@ TEST(GridSnapshot, IsSoundOrRefusedWhateverItsBytesAre) {
         saved.snapshot.write(bytes);
         for (int i = 0; i < 400; ++i) {
             GridSnapshot<float> snapshot;
-            if (snapshot.read(forged(bytes, random)).empty()) {
+            std::vector<std::byte> forged = bytes;
+            forgeBytes(forged, random);
+            if (snapshot.read(forged).empty()) {
                 World<float> other({play.name, 0, play.moving, play.step, play.extent, play.refused,
                                     0, 0, play.hasPairs, true, play.config},
                                    1);

@@ -7,6 +7,7 @@
 
 #include <broadphase/collectors.hpp>
 #include <broadphase/convex_region.hpp>
+#include <broadphase/grid_snapshot.hpp>
 #include <broadphase/neighbours.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/radius_search.hpp>
@@ -24,6 +25,7 @@
 #include <integration/bullet/shape_pick.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/static_triangles.hpp>
+#include <integration/bullet/world_snapshot.hpp>
 #include <integration/camera/camera.hpp>
 #include <integration/camera/frustum.hpp>
 #include <integration/camera/ground_footprint.hpp>
@@ -44,8 +46,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>

@@ -22,5 +22,6 @@ namespace hashphase::demos {
 [[nodiscard]] std::span<const HardCase> groundCases();    // terrain
 [[nodiscard]] std::span<const HardCase> viewCases();      // cameras and dragged rectangles
 [[nodiscard]] std::span<const HardCase> proximityCases();  // who is near, and nobody
+[[nodiscard]] std::span<const HardCase> rollbackCases();   // going back in time
 
 }  // namespace hashphase::demos

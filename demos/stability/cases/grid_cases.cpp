@@ -20,7 +20,7 @@ std::span<const HardCase> gridCases() {
     static const std::vector<HardCase> kAll =
         inOrder({numberCases(), borderCases(), roundingCases(), rayCases(), longRayCases(),
                  sweepCases(), sizeCases(), crowdCases(), churnCases(), repeatCases(),
-                 groundCases(), viewCases(), proximityCases()});
+                 groundCases(), viewCases(), proximityCases(), rollbackCases()});
     return kAll;
 }
 

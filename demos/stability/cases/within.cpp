@@ -322,7 +322,8 @@ constexpr HardCase kWithinCases[] = {
 }  // namespace
 
 std::span<const HardCase> bulletCases() {
-    static const std::vector<HardCase> kAll = inOrder({bodyCases(), kWithinCases});
+    static const std::vector<HardCase> kAll =
+        inOrder({bodyCases(), worldRollbackCases(), kWithinCases});
     return kAll;
 }
 

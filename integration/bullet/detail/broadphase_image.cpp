@@ -25,6 +25,7 @@ void BroadphaseImage::forEachKept(auto& broadphase, auto& image, const Visit& vi
     visit(broadphase.seen_, image.seen_);
     visit(broadphase.seenCount_, image.seenCount_);
     visit(broadphase.ghosts_, image.ghosts_);
+    visit(broadphase.mayGrow_, image.mayGrow_);
     visit(broadphase.watch_.isMoreTakenOut, image.isMoreTakenOut_);
 }
 
@@ -83,11 +84,9 @@ void BroadphaseImage::makeRoom(SpatialHashBroadphase& broadphase) const {
     cache.pairs_.reserve(static_cast<int>(pairs_.size()));
     ensureCapacity(cache.retired_, retired_.size());
     ensureCapacity(algorithms_, pairs_.size());
-    if (!takenOut_.empty() && broadphase.watch_.takenOut == nullptr) {
-        broadphase.watch_.takenOut = std::make_unique<std::vector<BulletProxyPair>>();
-    }
-    if (!takenOut_.empty()) {
-        ensureCapacity(*broadphase.watch_.takenOut, takenOut_.size());
+    if (!takenOut_.empty() && takenOutAgain_ == nullptr) {
+        takenOutAgain_ = std::make_unique<std::vector<BulletProxyPair>>();
+        takenOutAgain_->reserve(takenOut_.size());
     }
 }
 
@@ -162,16 +161,11 @@ void BroadphaseImage::restoreCache(SpatialHashBroadphase& broadphase,
 }
 
 void BroadphaseImage::restoreTakenOut(SpatialHashBroadphase& broadphase) const noexcept {
-    CacheWatch& watch = broadphase.watch_;
-    if (takenOut_.empty()) {
-        watch.takenOut = nullptr;
-        return;
-    }
-    watch.takenOut->clear();
     for (const Pair& pair : takenOut_) {
-        watch.takenOut->emplace_back(*broadphase.proxyAt(pair.first),
+        takenOutAgain_->emplace_back(*broadphase.proxyAt(pair.first),
                                      *broadphase.proxyAt(pair.second));
     }
+    broadphase.watch_.takenOut = std::move(takenOutAgain_);
 }
 
 std::span<btBroadphasePair> BroadphaseImage::pairsOf(

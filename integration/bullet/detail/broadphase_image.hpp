@@ -3,9 +3,11 @@
 
 // A SpatialHashBroadphase and its PairCache as they were at some time: for WorldSnapshot.
 
+#include <broadphase/core/byte_stream.hpp>
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/group_kinds.hpp>
 #include <broadphase/grid_snapshot.hpp>
+#include <integration/bullet/detail/object_numbers.hpp>
 #include <integration/bullet/pair_cache.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
@@ -56,6 +58,20 @@ public:
     [[nodiscard]] static btBroadphaseProxy* proxyAt(const SpatialHashBroadphase& broadphase,
                                                     std::uint32_t index) noexcept;
 
+    /// Writes it; clients by their numbers among these.
+    void write(ByteWriter& to, const ObjectNumbers& numbers) const;
+    /// Reads what was written; `objects` are the clients by their numbers. Returns what is wrong.
+    [[nodiscard]] std::string read(ByteReader& from, std::span<btCollisionObject* const> objects,
+                                   const SpatialHashBroadphase& broadphase);
+    /// Pairs as bytes, and back. Of what is read, whether they are of two different proxies, each once.
+    static void writePairs(std::span<const Pair> pairs, ByteWriter& to);
+    [[nodiscard]] bool readPairs(ByteReader& from, std::vector<Pair>& pairs) const;
+
+    /// The client of the proxy of that index; null where there is none.
+    [[nodiscard]] const btCollisionObject* clientOf(std::uint32_t index) const noexcept;
+    [[nodiscard]] std::span<const Pair> pairs() const noexcept { return pairs_; }
+    [[nodiscard]] std::size_t retiredCount() const noexcept { return retired_.size(); }
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:
@@ -64,6 +80,7 @@ private:
     /// Calls visit(member, copy) for what is copied as it is.
     template <class Visit>
     static void forEachKept(auto& broadphase, auto& image, const Visit& visit);
+    [[nodiscard]] bool readProxies(ByteReader& from, std::span<btCollisionObject* const> objects);
     void restoreCache(Broadphase& broadphase, btDispatcher* dispatcher) const noexcept;
     void restoreProxies(Broadphase& broadphase) const noexcept;
     void restoreTakenOut(Broadphase& broadphase) const noexcept;
@@ -75,6 +92,7 @@ private:
     bool groupsDecide_ = false;
     bool mustNoteGroups_ = false;
     bool isCacheBehind_ = false;
+    bool mayGrow_ = false;
     GroupKinds groupKinds_;
     GroupKinds::Set changedKinds_ = 0;
     std::vector<std::uint64_t> seen_;
@@ -87,7 +105,8 @@ private:
     std::vector<PairCache::PairSortKey> retired_;
     bool isSorted_ = true;
     bool isMoreTakenOut_ = false;
-    // Scratch of restore(): by the place of a saved pair.
+    // Scratch of restore(): what the cache's watch gets; and by the place of a saved pair.
+    mutable std::unique_ptr<std::vector<BulletProxyPair>> takenOutAgain_;
     mutable std::vector<btCollisionAlgorithm*> algorithms_;
 };
 

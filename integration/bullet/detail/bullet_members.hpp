@@ -14,6 +14,7 @@
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btCompoundCompoundCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <BulletCollision/NarrowPhaseCollision/btManifoldPoint.h>
 #include <BulletDynamics/Character/btKinematicCharacterController.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
@@ -201,6 +202,9 @@ struct WorldMembers : btDiscreteDynamicsWorld {
         visit(world.*(&WorldMembers::m_gravity));
         visit(world.*(&WorldMembers::m_localTime));
         visit(world.*(&WorldMembers::m_fixedTimeStep));
+    }
+    template <class Visit>
+    static void forEachSetting(btDiscreteDynamicsWorld& world, const Visit& visit) {
         visit(world.*(&WorldMembers::m_synchronizeAllMotionStates));
         visit(world.*(&WorldMembers::m_applySpeculativeContactRestitution));
         visit(world.*(&WorldMembers::m_latencyMotionStateInterpolation));
@@ -219,5 +223,79 @@ struct WorldMembers : btDiscreteDynamicsWorld {
         return world.*(&WorldMembers::m_predictiveManifolds);
     }
 };
+
+// --- All that is copied as it is -----------------------------------------------------------------
+
+template <class Visit>
+void forEachMember(btDiscreteDynamicsWorld& world, const Visit& visit) {
+    WorldMembers::forEach(world, visit);
+}
+
+/// What a program sets of a world, but for the solver's.
+struct WorldSettings {
+    btDiscreteDynamicsWorld& world;
+};
+
+template <class Visit>
+void forEachMember(const WorldSettings& settings, const Visit& visit) {
+    WorldMembers::forEachSetting(settings.world, visit);
+    btDispatcherInfo& dispatch = settings.world.getDispatchInfo();
+    visit(dispatch.m_timeStep);
+    visit(dispatch.m_stepCount);
+    visit(dispatch.m_dispatchFunc);
+    visit(dispatch.m_timeOfImpact);
+    visit(dispatch.m_useContinuous);
+    visit(dispatch.m_enableSatConvex);
+    visit(dispatch.m_enableSPU);
+    visit(dispatch.m_useEpa);
+    visit(dispatch.m_allowedCcdPenetration);
+    visit(dispatch.m_useConvexConservativeDistanceUtil);
+    visit(dispatch.m_convexConservativeDistanceThreshold);
+    visit(dispatch.m_deterministicOverlappingPairs);
+}
+
+template <class Visit>
+void forEachMember(btCollisionObject& object, const Visit& visit) {
+    ObjectMembers::forEach(object, visit);
+    if (btRigidBody* const body = btRigidBody::upcast(&object)) {
+        BodyMembers::forEach(*body, visit);
+    }
+}
+
+template <class Visit>
+void forEachMember(btKinematicCharacterController& character, const Visit& visit) {
+    CharacterMembers::forEach(character, visit);
+}
+
+template <class Visit>
+void forEachMember(btManifoldPoint& point, const Visit& visit) {
+    visit(point.m_localPointA);
+    visit(point.m_localPointB);
+    visit(point.m_positionWorldOnB);
+    visit(point.m_positionWorldOnA);
+    visit(point.m_normalWorldOnB);
+    visit(point.m_distance1);
+    visit(point.m_combinedFriction);
+    visit(point.m_combinedRollingFriction);
+    visit(point.m_combinedSpinningFriction);
+    visit(point.m_combinedRestitution);
+    visit(point.m_partId0);
+    visit(point.m_partId1);
+    visit(point.m_index0);
+    visit(point.m_index1);
+    visit(point.m_contactPointFlags);
+    visit(point.m_appliedImpulse);
+    visit(point.m_prevRHS);
+    visit(point.m_appliedImpulseLateral1);
+    visit(point.m_appliedImpulseLateral2);
+    visit(point.m_contactMotion1);
+    visit(point.m_contactMotion2);
+    visit(point.m_contactCFM);
+    visit(point.m_contactERP);
+    visit(point.m_frictionCFM);
+    visit(point.m_lifeTime);
+    visit(point.m_lateralFrictionDir1);
+    visit(point.m_lateralFrictionDir2);
+}
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -3,6 +3,7 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/diagnostics.hpp>
+#include <integration/bullet/detail/algorithm_kind.hpp>
 #include <integration/bullet/detail/bullet_members.hpp>
 
 #include <BulletCollision/CollisionDispatch/btCollisionConfiguration.h>
@@ -20,21 +21,8 @@
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
-enum class Kind { leaf, compound, twoCompounds };
-
-// As btDefaultCollisionConfiguration chooses.
-Kind kindOf(const btCollisionShape& a, const btCollisionShape& b) {
-    return a.isCompound() && b.isCompound()   ? Kind::twoCompounds
-           : a.isCompound() || b.isCompound() ? Kind::compound
-                                              : Kind::leaf;
-}
-
 const btCollisionObject& clientOf(const btBroadphaseProxy* proxy) {
     return *static_cast<const btCollisionObject*>(proxy->m_clientObject);
-}
-
-const btCompoundShape& compoundOf(const btCollisionShape& shape) {
-    return static_cast<const btCompoundShape&>(shape);
 }
 
 btHashedSimplePairCache& childPairsOf(btCollisionAlgorithm& algorithm) {
@@ -113,8 +101,8 @@ public:
         if (algorithm == nullptr) {
             return;
         }
-        const Kind kind = kindOf(a, b);
-        if (kind == Kind::leaf) {
+        const AlgorithmKind kind = kindOf(a, b);
+        if (kind == AlgorithmKind::leaf) {
             writeManifolds(*algorithm);
             return;
         }
@@ -126,7 +114,7 @@ public:
         for (int i = 0; i < children.size(); ++i) {
             write(children[i], *compound.getChildShape(i), other);
         }
-        if (kind == Kind::twoCompounds) {
+        if (kind == AlgorithmKind::twoCompounds) {
             const btSimplePairArray& pairs = childPairsOf(*algorithm).getOverlappingPairArray();
             image_.owned_.push_back(pairs.size());
             for (int i = 0; i < pairs.size(); ++i) {
@@ -230,11 +218,11 @@ public:
             return nullptr;
         }
         switch (kindOf(*a.getCollisionShape(), *b.getCollisionShape())) {
-            case Kind::leaf:
+            case AlgorithmKind::leaf:
                 return buildLeaf(present, a, b);
-            case Kind::compound:
+            case AlgorithmKind::compound:
                 return buildCompound(present, a, b);
-            case Kind::twoCompounds:
+            case AlgorithmKind::twoCompounds:
             default: {
                 btCollisionAlgorithm* const algorithm = buildCompound(present, a, b);
                 buildChildPairs(*algorithm, a, b);
@@ -245,8 +233,6 @@ public:
 
     /// Notes which of these each manifold of then is now.
     void take(const btAlignedObjectArray<btPersistentManifold*>& manifolds, int count) {
-        HASHPHASE_ASSERT(manifolds.size() == count,
-                         "An algorithm that is made again has as many manifolds as before.");
         for (int i = 0; i < count; ++i) {
             const auto place = static_cast<std::size_t>(next());
             if (i < manifolds.size()) {
@@ -395,6 +381,7 @@ private:
 
 void ContactImage::makeRoom() const {
     ensureCapacity(manifolds_, heads_.size());
+    ensureCapacity(listed_, heads_.size());
 }
 
 void ContactImage::beginRestore() const {
@@ -441,32 +428,50 @@ void ContactImage::restore(btAlignedObjectArray<btPersistentManifold*>& manifold
     builder.take(manifolds, count);
 }
 
+// Should there be more manifolds than were saved, which bytes of a stranger's can bring about, they come last.
 void ContactImage::endRestore(btCollisionDispatcher& dispatcher) const {
-    HASHPHASE_ASSERT(static_cast<std::size_t>(dispatcher.getNumManifolds()) == heads_.size(),
-                     "The dispatcher lists as many manifolds as before.");
-    btPersistentManifold** const listed = dispatcher.getInternalManifoldPointer();
+    btPersistentManifold** const list = dispatcher.getInternalManifoldPointer();
+    listed_.assign(list, list + dispatcher.getNumManifolds());
+    for (btPersistentManifold* manifold : listed_) {
+        manifold->m_index1a = -1;
+    }
+    int count = 0;
+    const auto enlist = [&](btPersistentManifold& manifold) {
+        list[count] = &manifold;
+        manifold.m_index1a = count++;
+    };
     const btManifoldPoint* point = points_.begin();
     for (std::size_t i = 0; i < heads_.size(); ++i) {
-        btPersistentManifold& manifold = *manifolds_[i];
-        const Head& head = heads_[i];
-        listed[i] = &manifold;
-        manifold.m_index1a = static_cast<int>(i);
-        manifold.setBodies(head.bodies[0], head.bodies[1]);
-        manifold.setContactBreakingThreshold(head.breakingThreshold);
-        manifold.setContactProcessingThreshold(head.processingThreshold);
-        manifold.m_companionIdA = head.companions[0];
-        manifold.m_companionIdB = head.companions[1];
-        manifold.setNumContacts(head.pointCount);
-        for (int k = 0; k < head.pointCount; ++k) {
-            manifold.getContactPoint(k) = *point++;
+        if (manifolds_[i] != nullptr) {
+            fill(*manifolds_[i], heads_[i], point);
+            enlist(*manifolds_[i]);
         }
+        point += heads_[i].pointCount;
+    }
+    for (btPersistentManifold* manifold : listed_) {
+        if (manifold->m_index1a < 0) {
+            enlist(*manifold);
+        }
+    }
+}
+
+void ContactImage::fill(btPersistentManifold& manifold, const Head& head,
+                        const btManifoldPoint* points) {
+    manifold.setBodies(head.bodies[0], head.bodies[1]);
+    manifold.setContactBreakingThreshold(head.breakingThreshold);
+    manifold.setContactProcessingThreshold(head.processingThreshold);
+    manifold.m_companionIdA = head.companions[0];
+    manifold.m_companionIdB = head.companions[1];
+    manifold.setNumContacts(head.pointCount);
+    for (int k = 0; k < head.pointCount; ++k) {
+        manifold.getContactPoint(k) = points[k];
     }
 }
 
 std::size_t ContactImage::memoryBytes() const noexcept {
     return sizeof(*this) + owned_.capacity() * sizeof(int) + heads_.capacity() * sizeof(Head) +
            points_.capacity() * sizeof(btManifoldPoint) +
-           manifolds_.capacity() * sizeof(manifolds_[0]) +
+           (manifolds_.capacity() + listed_.capacity()) * sizeof(manifolds_[0]) +
            static_cast<std::size_t>(found_.capacity()) * sizeof(btPersistentManifold*);
 }
 

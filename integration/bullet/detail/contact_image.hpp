@@ -8,7 +8,9 @@
 // manifolds that the former had. Those of Bullet keep nothing else, but for those of compound shapes, which keep
 // one for each child, or each pair of children, that is near.
 
+#include <broadphase/core/byte_stream.hpp>
 #include <broadphase/core/roomy_list.hpp>
+#include <integration/bullet/detail/object_numbers.hpp>
 #include <integration/bullet/precision.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
@@ -28,6 +30,12 @@ namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Frees the algorithm, if there is one. Nobody is told that its contacts have ended.
 void freeQuietly(btCollisionAlgorithm* algorithm, btDispatcher* dispatcher);
+
+/// The shapes of the two objects of a pair.
+struct ShapePair {
+    const btCollisionShape* a;
+    const btCollisionShape* b;
+};
 
 class ContactImage {
 public:
@@ -55,6 +63,13 @@ public:
                  btCollisionDispatcher& dispatcher) const;
     void endRestore(btCollisionDispatcher& dispatcher) const;
 
+    /// Writes it; bodies by their numbers among these.
+    void write(ByteWriter& to, const ObjectNumbers& numbers) const;
+    /// Reads what was written of pairs with such shapes, and one list of manifolds behind them. Returns whether that
+    /// can be: algorithms of compound shapes have their children, and each manifold has one owner.
+    [[nodiscard]] bool read(ByteReader& from, std::span<btCollisionObject* const> objects,
+                            std::span<const ShapePair> shapesOfPairs);
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:
@@ -68,6 +83,10 @@ private:
     };
     class Writer;
     class Builder;
+    class Checker;
+
+    static void fill(btPersistentManifold& manifold, const Head& head,
+                     const btManifoldPoint* points);
 
     // What algorithms own, by places in the dispatcher's list; of a compound's, first how many children it has,
     // then for each whether it has one, and that.
@@ -78,8 +97,9 @@ private:
 
     // Scratch.
     btManifoldArray found_;
-    mutable std::size_t at_ = 0;  // in owned_
-    mutable std::vector<btPersistentManifold*> manifolds_;
+    mutable std::size_t at_ = 0;                            // in owned_
+    mutable std::vector<btPersistentManifold*> manifolds_;  // by places in heads_
+    mutable std::vector<btPersistentManifold*> listed_;     // by the dispatcher now
 };
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -86,4 +86,25 @@ void GhostImage::endRestore(btCollisionDispatcher& dispatcher) const {
     detached_.clear();
 }
 
+// Two ghosts may list the same pair.
+void GhostImage::write(ByteWriter& to) const {
+    to.write(static_cast<std::uint32_t>(pairs_.size()));
+    for (const Pair& pair : pairs_) {
+        BroadphaseImage::writePairs({&pair, 1}, to);
+    }
+}
+
+bool GhostImage::read(ByteReader& from, const BroadphaseImage& broadphase) {
+    const auto count = from.read<std::uint32_t>();
+    pairs_.clear();
+    std::vector<Pair> one;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (!broadphase.readPairs(from, one) || one.size() != 1) {
+            return false;
+        }
+        pairs_.push_back(one.front());
+    }
+    return true;
+}
+
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -37,6 +37,11 @@ public:
     /// Frees the algorithms of pairs that are not there any more.
     void endRestore(btCollisionDispatcher& dispatcher) const;
 
+    void write(ByteWriter& to) const;
+    /// Returns whether what was read are pairs of two different proxies.
+    [[nodiscard]] bool read(ByteReader& from, const BroadphaseImage& broadphase);
+    [[nodiscard]] std::span<const BroadphaseImage::Pair> pairs() const noexcept { return pairs_; }
+
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + pairs_.capacity() * sizeof(pairs_[0]) +
                detached_.capacity() * sizeof(detached_[0]);

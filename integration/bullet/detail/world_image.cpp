@@ -5,6 +5,7 @@
 #include <integration/bullet/detail/bullet_classes.hpp>
 #include <integration/bullet/detail/bullet_members.hpp>
 #include <integration/bullet/detail/joint_image.hpp>
+#include <integration/bullet/detail/member_bytes.hpp>
 
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 
@@ -15,86 +16,24 @@
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
-/// Calls copy(member, bytes) for a member of a kind, or for its parts: of vectors no more than there is in them.
-template <class Copy>
-struct ByParts {
-    Copy copy;
-
-    template <PlainNumber Number>
-    void operator()(Number& number) const {
-        copy(&number, sizeof(number));
-    }
-    void operator()(btVector3& vector) const { copy(vector.m_floats, 3 * sizeof(btScalar)); }
-    void operator()(btQuaternion& rotation) const { copy(&rotation[0], 4 * sizeof(btScalar)); }
-    void operator()(btMatrix3x3& matrix) const {
-        for (int row = 0; row < 3; ++row) {
-            (*this)(matrix[row]);
-        }
-    }
-    void operator()(btTransform& place) const {
-        (*this)(place.getBasis());
-        (*this)(place.getOrigin());
-    }
-};
-
-template <class Visit>
-void forEachMember(btDiscreteDynamicsWorld& world, const Visit& visit) {
-    WorldMembers::forEach(world, visit);
-    btDispatcherInfo& dispatch = world.getDispatchInfo();
-    visit(dispatch.m_timeStep);
-    visit(dispatch.m_stepCount);
-    visit(dispatch.m_dispatchFunc);
-    visit(dispatch.m_timeOfImpact);
-    visit(dispatch.m_useContinuous);
-    visit(dispatch.m_enableSatConvex);
-    visit(dispatch.m_enableSPU);
-    visit(dispatch.m_useEpa);
-    visit(dispatch.m_allowedCcdPenetration);
-    visit(dispatch.m_useConvexConservativeDistanceUtil);
-    visit(dispatch.m_convexConservativeDistanceThreshold);
-    visit(dispatch.m_deterministicOverlappingPairs);
-}
-
-template <class Visit>
-void forEachMember(btCollisionObject& object, const Visit& visit) {
-    ObjectMembers::forEach(object, visit);
-    if (btRigidBody* const body = btRigidBody::upcast(&object)) {
-        BodyMembers::forEach(*body, visit);
-    }
-}
-
-template <class Visit>
-void forEachMember(btKinematicCharacterController& character, const Visit& visit) {
-    CharacterMembers::forEach(character, visit);
-}
-
-// More than the members of any object or world have together.
-constexpr std::size_t kMostBytes = 4096;
-
-// Writes the members of an object, a world or a character.
-void saveMembers(auto& owner, ByteWriter& to) {
-    to.writeBlock(kMostBytes, [&](std::byte* at) {
-        const auto save = [&at](const void* member, std::size_t count) {
-            std::memcpy(at, member, count);
-            at += count;
-        };
-        forEachMember(owner, ByParts<decltype(save)>{save});
-        return at;
-    });
-}
-
-void restoreMembers(auto& owner, ByteReader& from) {
-    const std::byte* at = from.rest().data();
-    const auto restore = [&at](void* member, std::size_t count) {
-        std::memcpy(member, at, count);
-        at += count;
-    };
-    forEachMember(owner, ByParts<decltype(restore)>{restore});
-    from.skip(static_cast<std::size_t>(at - from.rest().data()));
-}
-
 btCollisionDispatcher& dispatcherOf(btDiscreteDynamicsWorld& world) {
     return static_cast<btCollisionDispatcher&>(*world.getDispatcher());
+}
+
+btSequentialImpulseConstraintSolver& solverOf(btDiscreteDynamicsWorld& world) {
+    return *asSequentialImpulseSolver(world.getConstraintSolver());
+}
+
+// Bullet tells those of bodies that sleep nothing. Those of kinematic bodies tell where these are.
+void placeMotionState(btDiscreteDynamicsWorld& world, btRigidBody& body) {
+    if (body.getMotionState() == nullptr || body.isKinematicObject()) {
+        return;
+    }
+    if (body.isActive()) {
+        world.synchronizeSingleMotionState(&body);
+    } else {
+        body.getMotionState()->setWorldTransform(body.getWorldTransform());
+    }
 }
 
 template <class Item>
@@ -123,6 +62,13 @@ btPairCachingGhostObject* cachingGhost(btCollisionObject* object) {
 
 // --- Saving --------------------------------------------------------------------------------------
 
+void WorldImage::saveSettings(btDiscreteDynamicsWorld& world) {
+    settings.clear();
+    const WorldSettings ofWorld{world};
+    saveMembers(ofWorld, settings);
+    settings.write(&world.getSolverInfo(), sizeof(btContactSolverInfo));
+}
+
 std::string WorldImage::save(btDiscreteDynamicsWorld& world,
                              const SpatialHashBroadphase& ofBroadphase) {
     objects.clear();
@@ -133,9 +79,9 @@ std::string WorldImage::save(btDiscreteDynamicsWorld& world,
     fields.clear();
     ghosts.begin();
     contacts.begin();
+    saveSettings(world);
     saveMembers(world, fields);
-    fields.write(&world.getSolverInfo(), sizeof(btContactSolverInfo));
-    fields.write(asSequentialImpulseSolver(world.getConstraintSolver())->getRandSeed());
+    fields.write(std::uint64_t{solverOf(world).getRandSeed()});
 
     // Contacts first of pairs: in this order they are restored.
     for (const btBroadphasePair& pair : BroadphaseImage::pairsOf(ofBroadphase)) {
@@ -264,11 +210,13 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     contacts.restore(WorldMembers::predicted(world), dispatcher);
     contacts.endRestore(dispatcher);
 
+    ByteReader settingsReader(settings.bytes());
+    const WorldSettings ofWorld{world};
+    restoreMembers(ofWorld, settingsReader);
+    settingsReader.read(&world.getSolverInfo(), sizeof(btContactSolverInfo));
     ByteReader reader(fields.bytes());
     restoreMembers(world, reader);
-    reader.read(&world.getSolverInfo(), sizeof(btContactSolverInfo));
-    asSequentialImpulseSolver(world.getConstraintSolver())
-        ->setRandSeed(reader.read<unsigned long>());
+    solverOf(world).setRandSeed(static_cast<unsigned long>(reader.read<std::uint64_t>()));
     const void* const* pointer = pointers.data();
     for (const SavedObject& saved : objects) {
         btCollisionObject& object = *saved.object;
@@ -291,6 +239,9 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     for (const SavedJoint& saved : joints) {
         allJoints.push_back(saved.joint);
         restoreJoint(*saved.joint, reader);
+    }
+    for (btRigidBody* body : bodies) {
+        placeMotionState(world, *body);
     }
     auto& allActions = WorldMembers::actions(world);
     allActions.resizeNoInitialize(0);

@@ -53,7 +53,8 @@ struct WorldImage {
     std::vector<SavedJoint> joints;
     std::vector<btActionInterface*> actions;
     std::vector<const void*> pointers;
-    ByteWriter fields;  // of the world, the objects, the joints and the actions
+    ByteWriter fields;    // of the world, the objects, the joints and the actions
+    ByteWriter settings;  // of the world and its solver
     bool isSaved = false;
 
     /// What is not covered; empty where all is.
@@ -63,6 +64,13 @@ struct WorldImage {
     /// All but the broadphase. Returns what is wrong with the contacts.
     [[nodiscard]] std::string save(btDiscreteDynamicsWorld& world,
                                    const SpatialHashBroadphase& broadphase);
+
+    /// Replaces what `bytes` held by all. Returns what cannot be written.
+    [[nodiscard]] std::string write(std::vector<std::byte>& bytes) const;
+    /// Takes what was written of such a world. Returns what is wrong; then it is of no use.
+    [[nodiscard]] std::string read(std::span<const std::byte> bytes, btDiscreteDynamicsWorld& world,
+                                   const SpatialHashBroadphase& broadphase,
+                                   const Returned& returned);
 
     /// What is missing, or not as it was; empty where all is there. Lists what has been added.
     [[nodiscard]] std::string find(btDiscreteDynamicsWorld& world, const Returned& returned) const;
@@ -75,6 +83,7 @@ struct WorldImage {
         return sizeof(*this) + broadphase.memoryBytes() + contacts.memoryBytes() +
                ghosts.memoryBytes() + objects.capacity() * sizeof(objects[0]) +
                joints.capacity() * sizeof(joints[0]) + fields.memoryBytes() +
+               settings.memoryBytes() +
                (bodies.capacity() + actions.capacity() + pointers.capacity() +
                 addedObjects.capacity() + addedJoints.capacity() + addedActions.capacity()) *
                    sizeof(void*) +
@@ -88,12 +97,31 @@ private:
     [[nodiscard]] bool isPresent(const void* pointer) const {
         return areAllPresent || present.contains(reinterpret_cast<std::uintptr_t>(pointer));
     }
+    void saveSettings(btDiscreteDynamicsWorld& world);
+    [[nodiscard]] std::string readObjects(ByteReader& from, btDiscreteDynamicsWorld& world,
+                                          const Returned& returned);
+    [[nodiscard]] std::string takeNumbers(ByteReader& from, std::span<const std::uint32_t> numbers);
+    [[nodiscard]] std::string readJoints(ByteReader& from, btDiscreteDynamicsWorld& world,
+                                         const Returned& returned);
+    [[nodiscard]] std::string readActions(ByteReader& from, btDiscreteDynamicsWorld& world,
+                                          const Returned& returned);
+    [[nodiscard]] bool areDistinct() const;
+    [[nodiscard]] bool areProxiesRight() const;
+    [[nodiscard]] std::vector<ShapePair> shapesOfPairs() const;
+    [[nodiscard]] std::size_t countFieldBytes(btDiscreteDynamicsWorld& world) const;
     [[nodiscard]] std::string findObjects(btDiscreteDynamicsWorld& world,
                                           const Returned& returned) const;
     [[nodiscard]] std::string findJoints(btDiscreteDynamicsWorld& world,
                                          const Returned& returned) const;
     [[nodiscard]] std::string findActions(btDiscreteDynamicsWorld& world,
                                           const Returned& returned) const;
+
+    /// Where in `pointers` the joint with that number belongs.
+    struct JointPlace {
+        std::size_t place;
+        std::uint32_t number;
+    };
+    std::vector<JointPlace> jointPlaces;  // scratch of read()
 
     // Scratch of find(): the addresses of what is there; and what is to be taken out.
     mutable FlatSet present;

@@ -3,6 +3,7 @@
 // What agents are told, where that is known without brute force; in lives of all scenes:
 // ai_scenes_test.cpp.
 
+#include <broadphase/grid_snapshot.hpp>
 #include <integration/ai/nearest.hpp>
 #include <integration/ai/proximity.hpp>
 #include <integration/ai/radar.hpp>
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace hashphase::test {
@@ -238,6 +240,78 @@ TYPED_TEST(AgentsTest, EnterZonesOfAnotherGridOnceTheseForget) {
         }
         zones.forgetOccupants();
         EXPECT_TRUE(zones.occupants(kept).empty());
+    }
+}
+
+/// Proxies and zones that come, move and go as the number of the frame says.
+template <class Scalar>
+struct ZonedFrames {
+    using Events = std::vector<ZoneEvent>;
+
+    /// All that the frame tells, one list behind the other.
+    Events play(std::uint64_t frame) {
+        Random random(frame);
+        for (ProxyId& id : proxies) {
+            const auto box = boxAround<Scalar>(random.pointIn(0, 10), {0.5, 0.5, 0.5});
+            if (id.isNull()) {
+                id = grid.add(box);
+            } else if (random.chance(0.1)) {
+                grid.remove(std::exchange(id, {}));
+            } else if (random.chance(0.4)) {
+                grid.move(id, box);
+            }
+        }
+        for (ZoneId& id : watched) {
+            const Zone<Scalar> zone{
+                SphereRegion<Scalar>(random.pointIn(0, 10).template cast<Scalar>(), 3)};
+            if (id.isNull()) {
+                id = zones.add(zone);
+            } else if (random.chance(0.1)) {
+                zones.remove(std::exchange(id, {}));
+            } else if (random.chance(0.3)) {
+                zones.set(id, zone);
+            }
+        }
+        const auto isDue = [&](ZoneId) { return random.chance(0.8); };
+        const ZoneEvents told = zones.update(grid, acceptAllInZones, isDue);
+        Events all;
+        for (const auto& list : {told.entered, told.stayed, told.left}) {
+            all.insert(all.end(), list.begin(), list.end());
+            all.emplace_back();
+        }
+        return all;
+    }
+
+    Grid<Scalar> grid;
+    std::vector<ProxyId> proxies = std::vector<ProxyId>(60);
+    std::vector<ZoneId> watched = std::vector<ZoneId>(5);
+    Zones<Scalar> zones;
+};
+
+TYPED_TEST(AgentsTest, EnterStayInAndLeaveZonesAsBeforeWhereACopyOfTheZonesIsPutBack) {
+    ZonedFrames<TypeParam> frames;
+    for (std::uint64_t frame = 0; frame < 20; ++frame) {
+        frames.play(frame);
+    }
+    GridSnapshot<TypeParam> snapshot;
+    snapshot.save(frames.grid);
+    const std::vector<ProxyId> proxies = frames.proxies;
+    const std::vector<ZoneId> watched = frames.watched;
+    const Zones<TypeParam> zones = frames.zones;
+    std::vector<std::vector<ZoneEvent>> told;
+    for (std::uint64_t frame = 20; frame < 40; ++frame) {
+        told.push_back(frames.play(frame));
+    }
+    ASSERT_GT(told.front().size(), 10U);
+    for (int round = 0; round < 3; ++round) {
+        snapshot.restore(frames.grid);
+        frames.proxies = proxies;
+        frames.watched = watched;
+        frames.zones = zones;
+        for (std::uint64_t frame = 20; frame < 40; ++frame) {
+            ASSERT_EQ(frames.play(frame), told[frame - 20]) << "frame " << frame;
+        }
+        frames.play(1000);
     }
 }
 

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -112,6 +114,31 @@ TEST_P(WorldSnapshots, GoBackEightStepsInEachStepAsIfTheyHadNeverGoneBack) {
         }
         rolled.save(ring[step % kBack]);
         ASSERT_EQ(rolled.step(), straight.step()) << "step " << step;
+    }
+}
+
+TEST_P(WorldSnapshots, TakeTheSameStepsWhereTheyAreSent) {
+    SavedWorld here(GetParam().world, GetParam().order);
+    SavedWorld there(GetParam().world, GetParam().order);
+    for (const int steps : {0, 1, 30, 90, 150}) {
+        for (int step = 0; step < steps; ++step) {
+            static_cast<void>(here.step());
+        }
+        WorldSnapshot snapshot;
+        here.save(snapshot);
+        std::vector<std::byte> bytes;
+        ASSERT_EQ(snapshot.write(bytes), "");
+        WorldSnapshot received;
+        ASSERT_EQ(received.read(bytes, there.physics.world(), there.broadphase()), "");
+        there.restore(received);
+        std::vector<std::byte> again;
+        WorldSnapshot saved;
+        there.save(saved);
+        ASSERT_EQ(saved.write(again), "");
+        EXPECT_EQ(bytes, again);
+        for (int step = 0; step < 40; ++step) {
+            ASSERT_EQ(there.step(), here.step()) << "step " << step << " after " << steps;
+        }
     }
 }
 
