@@ -4,6 +4,7 @@
 // groups are set or pairs ignored, and of what sweeps.
 
 #include <broadphase/pairs.hpp>
+#include <broadphase/sweeps.hpp>
 #include <tests/support/cube_stories.hpp>
 #include <tests/support/population.hpp>
 #include <tests/support/threaded_for.hpp>
@@ -173,6 +174,45 @@ TEST(PairFilter, MayTakeItsArgumentsAsAuto) {
     PairFilter filter = accept;
     PairFilter copy = filter;
     EXPECT_EQ(pairs.update(copy).born.size(), 1U);
+}
+
+// --- Whether there is anything to find -------------------------------------------------------------
+
+TEST(PairsUpToDate, AreSoFromAnUpdateToTheNextChange) {
+    const Aabb<float> here = boxAround<float>({0, 0, 0}, {1, 1, 1});
+    const Aabb<float> there = boxAround<float>({0.25, 0, 0}, {1, 1, 1});
+    Grid<float> grid;
+    Sweeps<float> sweeps(grid);
+    Pairs<float> pairs(grid, &sweeps);
+    const ProxyId a = grid.add(here);
+    ProxyId b = grid.add(here, Mobility::resting);
+    const std::function<void()> changes[] = {
+        [] {},  // those before
+        [&] { grid.move(a, there); },
+        [&] { grid.move(b, there); },
+        [&] {
+            grid.setGroups(a, {1, 1});
+        },
+        [&] { grid.remove(b); },
+        [&] { b = grid.add(here); },
+        [&] {
+            grid.move(b, there);
+            static_cast<void>(pairs.findPairsNow(b, acceptAllPairs));
+        },
+        [&] {
+            grid.shiftOrigin({0.1F, 0, 0});
+        }};
+    for (const auto& change : changes) {
+        change();
+        EXPECT_FALSE(pairs.isUpToDate());
+        pairs.update();
+        EXPECT_TRUE(pairs.isUpToDate());
+        grid.move(a, Aabb<float>(grid.box(a)));
+        EXPECT_TRUE(pairs.isUpToDate());
+    }
+    sweeps.set(a, Vector3<float>(5, 0, 0));
+    pairs.update();
+    EXPECT_FALSE(pairs.isUpToDate()) << "what sweeps is looked at in each update";
 }
 
 // --- Cost ----------------------------------------------------------------------------------------

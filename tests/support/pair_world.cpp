@@ -188,7 +188,9 @@ PairChanges PairWorld<Scalar>::update() {
     asked_.clear();
     askedNow_.clear();
     before_ = set_;
+    const bool wasUpToDate = pairs.isUpToDate();
     const PairChanges changes = pairs.update(recordingFilter());
+    EXPECT_TRUE(!wasUpToDate || (changes.born.empty() && changes.died.empty() && asked_.empty()));
     apply(changes);
     noteAsked("update");
     return changes;
