@@ -22,8 +22,8 @@
 namespace hashphase::test {
 namespace {
 
-constexpr int kCharacter = btBroadphaseProxy::CharacterFilter;
-const Box kThisPlace = boxAround({0, 0, 0}, {1, 1, 1});
+constexpr int kCharactersOnly = btBroadphaseProxy::CharacterFilter;
+const Box kOnePlace = boxAround({0, 0, 0}, {1, 1, 1});
 
 TEST(WorldsBroadphase, RefusesWorldsThatAreNoneOfThem) {
     const auto errorOf = [](const auto& call) -> std::string {
@@ -36,11 +36,11 @@ TEST(WorldsBroadphase, RefusesWorldsThatAreNoneOfThem) {
     };
     ManyWorlds boxes(3);
     for (const int world : {-1, 3, std::numeric_limits<int>::max()}) {
-        EXPECT_EQ(errorOf([&] { boxes.createIn(world, kThisPlace); }),
+        EXPECT_EQ(errorOf([&] { boxes.createIn(world, kOnePlace); }),
                   "WorldsConfig::worldOf returned " + std::to_string(world) +
                       ", but worlds are numbered from 0 to 2.");
     }
-    EXPECT_NE(errorOf([&] { boxes.create(kThisPlace); }).find("has no world"), std::string::npos);
+    EXPECT_NE(errorOf([&] { boxes.create(kOnePlace); }).find("has no world"), std::string::npos);
     EXPECT_TRUE(boxes.proxies.empty());
     for (const int count : {-1, 0, WorldsBroadphase::kMostWorlds + 1}) {
         EXPECT_NE(errorOf([&] {
@@ -70,8 +70,8 @@ std::string assertedBy(const Call& call) {
 
 TEST(WorldsBroadphaseMisuse, IsAsserted) {
     ManyWorlds boxes(2);
-    btBroadphaseProxy* const proxy = boxes.createIn(0, kThisPlace);
-    boxes.createIn(0, kThisPlace);
+    btBroadphaseProxy* const proxy = boxes.createIn(0, kOnePlace);
+    boxes.createIn(0, kOnePlace);
     PairJournal journal;
     boxes.cache.setInternalGhostPairCallback(&journal);
     std::vector<std::string> within;
@@ -92,7 +92,7 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
     EXPECT_NE(assertedBy([&] { boxes.worlds.destroyProxy(nullptr, nullptr); }), "nothing");
     EXPECT_NE(assertedBy([&] { boxes.worlds.setAabbs({&proxy, 1}, {}, {}, nullptr); }), "nothing");
     boxes.destroy(proxy);
-    EXPECT_NE(assertedBy([&] { boxes.set(proxy, kThisPlace); }), "nothing");
+    EXPECT_NE(assertedBy([&] { boxes.set(proxy, kOnePlace); }), "nothing");
     EXPECT_NE(assertedBy([&] { boxes.worlds.destroyProxies({&proxy, 1}, nullptr); }), "nothing");
 }
 
@@ -124,7 +124,7 @@ TEST(WorldsBroadphaseOutOfMemory, TearsNothing) {
     using Attempt = void (*)(ScarceWorlds&);
     const std::array<std::pair<Attempt, std::size_t>, 4> attempts{
         std::pair<Attempt, std::size_t>{[](ScarceWorlds& boxes) { boxes.createSome(40, 1); }, 8},
-        {[](ScarceWorlds& boxes) { boxes.createSome(40, kCharacter); }, 8},
+        {[](ScarceWorlds& boxes) { boxes.createSome(40, kCharactersOnly); }, 8},
         {[](ScarceWorlds& boxes) {
              boxes.moveAll();
              boxes.step();
