@@ -227,7 +227,7 @@ Benchmark worldSnapshots(const char* name, std::string_view scene) {
         *std::find_if(scenes.begin(), scenes.end(),
                       [scene](const demos::WorldSceneKind& each) { return each.name == scene; });
     Benchmark benchmark = snapshots(
-        name, "WorldSnapshot of a Bullet world, scene " + std::string(scene) + ", all awake");
+        name, "WorldSnapshot of a Bullet world, scene " + std::string(scene) + ", nothing asleep");
     benchmark.make = [&kind](std::size_t objects, std::uint64_t seed) {
         return std::make_unique<WorldSnapshots>(kind, objects, seed);
     };
@@ -238,7 +238,8 @@ Benchmark worldSnapshots(const char* name, std::string_view scene) {
 
 std::vector<Benchmark> snapshotBenchmarks() {
     return {gridSnapshots("snapshots-grid", "uniform"), worldSnapshots("snapshots-stack", "stack"),
-            worldSnapshots("snapshots-pile", "pile")};
+            worldSnapshots("snapshots-pile", "pile"),
+            worldSnapshots("snapshots-city", "static-city")};
 }
 
 }  // namespace hashphase::benchmarks
