@@ -21,6 +21,9 @@ namespace hashphase::test {
 
 /// Many worlds over a pair cache of ours.
 struct ManyWorlds : AnyBoxes {
+    static constexpr int kCharacter = btBroadphaseProxy::CharacterFilter;
+    static inline const Box kPlace = boxAround({0, 0, 0}, {1, 1, 1});
+
     explicit ManyWorlds(int count, const SpatialHashConfig& each = {},
                         PairOrder order = PairOrder::arrival)
         : ManyWorlds(new PairCache(order), worldsByUserIndex(count, each)) {}
