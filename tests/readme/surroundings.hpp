@@ -25,8 +25,8 @@
 #include <integration/bullet/shape_pick.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/static_triangles.hpp>
-#include <integration/bullet/worlds_broadphase.hpp>
 #include <integration/bullet/world_snapshot.hpp>
+#include <integration/bullet/worlds_broadphase.hpp>
 #include <integration/camera/camera.hpp>
 #include <integration/camera/frustum.hpp>
 #include <integration/camera/ground_footprint.hpp>
