@@ -58,8 +58,8 @@ struct ManyWorlds : AnyBoxes {
         std::vector<Uids> pairs;
         for (const btBroadphaseProxy* a : proxies) {
             for (const btBroadphaseProxy* b : proxies) {
-                if (a->m_uniqueId < b->m_uniqueId && areOfOneWorld(*a, *b) &&
-                    overlap(boxOf(*a), boxOf(*b)) && groupsCollide(*a, *b) &&
+                if (a->m_uniqueId < b->m_uniqueId && overlap(boxOf(*a), boxOf(*b)) &&
+                    areOfOneWorld(*a, *b) && groupsCollide(*a, *b) &&
                     !ignored.contains(uidsOf(*a, *b))) {
                     pairs.push_back(uidsOf(*a, *b));
                 }
