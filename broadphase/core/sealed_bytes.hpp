@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include <broadphase/core/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// Of what kind, and of which version of it.
@@ -44,7 +46,7 @@ inline void sealBytes(const Seal& seal, std::span<const std::byte> content,
     ByteWriter head;
     head.write(seal.kind);
     head.write(seal.version);
-    head.write(static_cast<std::uint64_t>(content.size()));
+    head.write(std::uint64_t{content.size()});
     head.write(checksum(content));
     sealed.assign(head.bytes().begin(), head.bytes().end());
     sealed.insert(sealed.end(), content.begin(), content.end());
@@ -77,3 +79,5 @@ inline void sealBytes(const Seal& seal, std::span<const std::byte> content,
 }
 
 }  // namespace hashphase::detail
+
+#include <broadphase/core/restore_macros.hpp>

@@ -27,8 +27,8 @@ WHERE did.name <> 'by-hand' GROUP BY did.contestant;
 
 -- What saving and going back take beside the frame, in the same frame.
 CREATE TABLE shares AS
-SELECT did."case", did.contestant, did.name, did.frames, did.ms, median(own.ms / frame.ms) AS share,
-       percentile(own.ms / frame.ms, 0.05) AS low, percentile(own.ms / frame.ms, 0.95) AS high,
+SELECT did."case", did.contestant, did.name, did.frames, did.ms, median(1.0 * own.ms / frame.ms) AS share,
+       percentile(1.0 * own.ms / frame.ms, 0.05) AS low, percentile(1.0 * own.ms / frame.ms, 0.95) AS high,
        did.own_for_objects AS bytes
 FROM did JOIN cases ON cases.rowid = did."case" AND "group" = 'snapshots'
      JOIN did AS whole ON whole."case" = did."case" AND whole.name = 'frame'

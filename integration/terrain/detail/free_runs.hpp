@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <broadphase/core/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 /// Free numbers, in ascending runs that do not touch each other. Cost of each function: O(runs).
@@ -91,3 +93,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/core/restore_macros.hpp>

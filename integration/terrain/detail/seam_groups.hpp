@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <vector>
 
+#include <broadphase/core/hide_macros.hpp>
+
 namespace hashphase::detail {
 
 template <class Scalar>
@@ -140,3 +142,5 @@ private:
 };
 
 }  // namespace hashphase::detail
+
+#include <broadphase/core/restore_macros.hpp>

@@ -197,7 +197,25 @@ struct Character {
     btKinematicCharacterController controller;
 };
 
-/// Characters walk among boxes; a sensor, and a kinematic body.
+/// A ghost, which lists what is in it, and leaves the world before it ends.
+struct Sensor {
+    Sensor(WorldContents& itsContents, const btVector3& at) : contents(itsContents) {
+        ghost.setWorldTransform(btTransform(btQuaternion(0, 0, 0, 1), at));
+        ghost.setCollisionShape(&shape);
+        ghost.setCollisionFlags(btCollisionObject::CF_NO_CONTACT_RESPONSE);
+        contents.world().addCollisionObject(&ghost, btBroadphaseProxy::SensorTrigger,
+                                            btBroadphaseProxy::AllFilter);
+    }
+    ~Sensor() { contents.world().removeCollisionObject(&ghost); }
+    Sensor(const Sensor&) = delete;
+    Sensor& operator=(const Sensor&) = delete;
+
+    WorldContents& contents;
+    btSphereShape shape{2};
+    btGhostObject ghost;
+};
+
+/// Characters walk among boxes, and through a sensor.
 void fillCharacters(WorldContents& contents, const btVector3& /*origin*/, int size) {
     static btGhostPairCallback tellGhosts;
     contents.world().getPairCache()->setInternalGhostPairCallback(&tellGhosts);
@@ -209,6 +227,7 @@ void fillCharacters(WorldContents& contents, const btVector3& /*origin*/, int si
                                    btScalar(0.5) + static_cast<btScalar>(i / 5),
                                    static_cast<btScalar>(i % 3 - 1) * btScalar(1.2)));
     }
+    contents.keep(std::make_shared<Sensor>(contents, btVector3(0, 1, -1)));
     for (int i = 0; i < 3; ++i) {
         contents.keep(std::make_shared<Character>(
             contents, btVector3(static_cast<btScalar>(3 * i - 3), 3, -3),

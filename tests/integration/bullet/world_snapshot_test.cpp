@@ -100,7 +100,7 @@ TEST_P(WorldSnapshots, TakeTheSameStepsAgainWhateverHappenedBetween) {
 
 TEST_P(WorldSnapshots, GoBackEightStepsInEachStepAsIfTheyHadNeverGoneBack) {
     constexpr std::size_t kBack = 8;
-    constexpr std::size_t kSteps = 200;
+    constexpr std::size_t kSteps = 600;
     SavedWorld straight(GetParam().world, GetParam().order);
     SavedWorld rolled(GetParam().world, GetParam().order);
     std::array<WorldSnapshot, kBack> ring;
