@@ -331,11 +331,11 @@ std::vector<Benchmark> pairBenchmarks() {
 
 std::vector<Benchmark> catalog(std::uint64_t seed) {
     std::vector<Benchmark> all;
-    for (std::vector<Benchmark>& part :
-         std::array{pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(),
-                    rayBenchmarks(), neighbourBenchmarks(), crowdBenchmarks(), cullingBenchmarks(),
-                    sweepBenchmarks(), terrainBenchmarks(), cellSizeBenchmarks(), farBenchmarks(),
-                    effectsBenchmarks(), snapshotBenchmarks()}) {
+    for (std::vector<Benchmark>& part : std::array{
+             pairBenchmarks(), randomBenchmarks(seed), populationBenchmarks(), rayBenchmarks(),
+             neighbourBenchmarks(), crowdBenchmarks(), cullingBenchmarks(), sweepBenchmarks(),
+             terrainBenchmarks(), worldsBenchmarks(), cellSizeBenchmarks(), farBenchmarks(),
+             effectsBenchmarks(), snapshotBenchmarks()}) {
         std::move(part.begin(), part.end(), std::back_inserter(all));
     }
     return all;

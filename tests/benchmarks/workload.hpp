@@ -170,6 +170,7 @@ struct Benchmark {
 [[nodiscard]] std::vector<Benchmark> terrainBenchmarks();
 [[nodiscard]] std::vector<Benchmark> effectsBenchmarks();
 [[nodiscard]] std::vector<Benchmark> snapshotBenchmarks();
+[[nodiscard]] std::vector<Benchmark> worldsBenchmarks();
 
 /// True for contestants that are not too slow for so many objects.
 [[nodiscard]] bool isFastEnough(const ContestantKind& kind, std::size_t objects);

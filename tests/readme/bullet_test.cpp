@@ -117,5 +117,27 @@ TEST(BulletPageAlone, CacheOfYoursIsUsed) {
     EXPECT_EQ(broadphase.getOverlappingPairCache(), &pairCache);
 }
 
+TEST(BulletPageAlone, WorldsAreOneWorldOfBullets) {
+    FallingSphere sphere;
+    btDispatcher* const dispatcher = &sphere.dispatcher;
+    btConstraintSolver* const solver = &sphere.solver;
+    btCollisionConfiguration* const configuration = &sphere.configuration;
+    std::deque<btRigidBody> robots;
+    for (int i = 0; i < 300; ++i) {
+        robots.emplace_back(1, nullptr, sphere.body.getCollisionShape());
+    }
+    const btVector3 from(0, 9, 0);
+    const btVector3 to(0, -9, 0);
+    btCollisionWorld::ClosestRayResultCallback hit(from, to);
+#include <bullet_11.inl>
+    EXPECT_EQ(hit.m_collisionObject, &robots[7]);
+    EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
+    world.performDiscreteCollisionDetection();
+    EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 1);
+    for (btRigidBody& robot : robots) {
+        world.removeRigidBody(&robot);
+    }
+}
+
 }  // namespace
 }  // namespace hashphase::test

@@ -26,6 +26,7 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/static_triangles.hpp>
 #include <integration/bullet/world_snapshot.hpp>
+#include <integration/bullet/worlds_broadphase.hpp>
 #include <integration/camera/camera.hpp>
 #include <integration/camera/frustum.hpp>
 #include <integration/camera/ground_footprint.hpp>
@@ -48,6 +49,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <span>

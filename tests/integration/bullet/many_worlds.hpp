@@ -21,6 +21,9 @@ namespace hashphase::test {
 
 /// Many worlds over a pair cache of ours.
 struct ManyWorlds : AnyBoxes {
+    static constexpr int kCharacter = btBroadphaseProxy::CharacterFilter;
+    static inline const Box kPlace = boxAround({0, 0, 0}, {1, 1, 1});
+
     explicit ManyWorlds(int count, const SpatialHashConfig& each = {},
                         PairOrder order = PairOrder::arrival)
         : ManyWorlds(new PairCache(order), worldsByUserIndex(count, each)) {}
@@ -55,8 +58,8 @@ struct ManyWorlds : AnyBoxes {
         std::vector<Uids> pairs;
         for (const btBroadphaseProxy* a : proxies) {
             for (const btBroadphaseProxy* b : proxies) {
-                if (a->m_uniqueId < b->m_uniqueId && areOfOneWorld(*a, *b) &&
-                    overlap(boxOf(*a), boxOf(*b)) && groupsCollide(*a, *b) &&
+                if (a->m_uniqueId < b->m_uniqueId && overlap(boxOf(*a), boxOf(*b)) &&
+                    areOfOneWorld(*a, *b) && groupsCollide(*a, *b) &&
                     !ignored.contains(uidsOf(*a, *b))) {
                     pairs.push_back(uidsOf(*a, *b));
                 }

@@ -22,9 +22,6 @@
 namespace hashphase::test {
 namespace {
 
-constexpr int kCharactersOnly = btBroadphaseProxy::CharacterFilter;
-const Box kOnePlace = boxAround({0, 0, 0}, {1, 1, 1});
-
 TEST(WorldsBroadphase, RefusesWorldsThatAreNoneOfThem) {
     const auto errorOf = [](const auto& call) -> std::string {
         try {
@@ -36,11 +33,12 @@ TEST(WorldsBroadphase, RefusesWorldsThatAreNoneOfThem) {
     };
     ManyWorlds boxes(3);
     for (const int world : {-1, 3, std::numeric_limits<int>::max()}) {
-        EXPECT_EQ(errorOf([&] { boxes.createIn(world, kOnePlace); }),
+        EXPECT_EQ(errorOf([&] { boxes.createIn(world, ManyWorlds::kPlace); }),
                   "WorldsConfig::worldOf returned " + std::to_string(world) +
                       ", but worlds are numbered from 0 to 2.");
     }
-    EXPECT_NE(errorOf([&] { boxes.create(kOnePlace); }).find("has no world"), std::string::npos);
+    EXPECT_NE(errorOf([&] { boxes.create(ManyWorlds::kPlace); }).find("has no world"),
+              std::string::npos);
     EXPECT_TRUE(boxes.proxies.empty());
     for (const int count : {-1, 0, WorldsBroadphase::kMostWorlds + 1}) {
         EXPECT_NE(errorOf([&] {
@@ -70,8 +68,8 @@ std::string assertedBy(const Call& call) {
 
 TEST(WorldsBroadphaseMisuse, IsAsserted) {
     ManyWorlds boxes(2);
-    btBroadphaseProxy* const proxy = boxes.createIn(0, kOnePlace);
-    boxes.createIn(0, kOnePlace);
+    btBroadphaseProxy* const proxy = boxes.createIn(0, ManyWorlds::kPlace);
+    boxes.createIn(0, ManyWorlds::kPlace);
     PairJournal journal;
     boxes.cache.setInternalGhostPairCallback(&journal);
     std::vector<std::string> within;
@@ -92,7 +90,7 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
     EXPECT_NE(assertedBy([&] { boxes.worlds.destroyProxy(nullptr, nullptr); }), "nothing");
     EXPECT_NE(assertedBy([&] { boxes.worlds.setAabbs({&proxy, 1}, {}, {}, nullptr); }), "nothing");
     boxes.destroy(proxy);
-    EXPECT_NE(assertedBy([&] { boxes.set(proxy, kOnePlace); }), "nothing");
+    EXPECT_NE(assertedBy([&] { boxes.set(proxy, ManyWorlds::kPlace); }), "nothing");
     EXPECT_NE(assertedBy([&] { boxes.worlds.destroyProxies({&proxy, 1}, nullptr); }), "nothing");
 }
 
@@ -124,7 +122,7 @@ TEST(WorldsBroadphaseOutOfMemory, TearsNothing) {
     using Attempt = void (*)(ScarceWorlds&);
     const std::array<std::pair<Attempt, std::size_t>, 4> attempts{
         std::pair<Attempt, std::size_t>{[](ScarceWorlds& boxes) { boxes.createSome(40, 1); }, 8},
-        {[](ScarceWorlds& boxes) { boxes.createSome(40, kCharactersOnly); }, 8},
+        {[](ScarceWorlds& boxes) { boxes.createSome(40, ManyWorlds::kCharacter); }, 8},
         {[](ScarceWorlds& boxes) {
              boxes.moveAll();
              boxes.step();
