@@ -422,8 +422,9 @@ private:
 
     detail::StableArray<Proxy> proxies_;  // by ProxyId::index
     std::vector<int> uniqueIds_;          // by ProxyId::index; 0 where no proxy is alive
+    int* idCounter_ = &lastUniqueId_;     // or that of all worlds
     int lastUniqueId_ = 0;
-    int* idCounter_ = &lastUniqueId_;  // or that of all worlds
+    detail::PeakWatch peaks_;  // of the cache
     std::uint16_t worldNumber_ = 0;
 
     bool groupsDecide_ = false;            // who may pair, and no callback
@@ -439,7 +440,6 @@ private:
     std::vector<std::uint64_t> seen_;           // slots whose groups are known since then; or empty
     std::size_t seenCount_ = 0;
     std::unique_ptr<detail::FlatSet> ghosts_;  // their slots; made with the first
-    detail::PeakWatch peaks_;                  // of the cache
     std::vector<BulletProxyPair> died_;        // scratch of PairLists
     std::vector<BulletProxyPair> born_;
     std::uint64_t cacheChangeCount_ = 0;  // calls that have changed it, and called back

@@ -29,19 +29,18 @@ LivingBroadphase::LivingBroadphase() noexcept {
 }
 
 LivingBroadphase::~LivingBroadphase() {
-    if (isListed_) {
-        unlist();
-    }
+    unlist();
 }
 
 void LivingBroadphase::unlist() noexcept {
     const std::lock_guard lock(livingMutex());
     LivingBroadphase** link = &newestLiving;
-    while (*link != this) {
+    while (*link != nullptr && *link != this) {
         link = &(*link)->next_;
     }
-    *link = next_;
-    isListed_ = false;
+    if (*link == this) {
+        *link = next_;
+    }
 }
 
 SpatialHashBroadphase* LivingBroadphase::find(const btBroadphaseInterface* broadphase) noexcept {

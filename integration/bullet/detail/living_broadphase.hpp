@@ -27,12 +27,11 @@ public:
         const btBroadphaseInterface* broadphase) noexcept;
 
 protected:
-    /// For one that no world of Bullet's has for its own: find() does not look at it.
+    /// For one that no world of Bullet's has for its own: find() does not look at it. Twice does no harm.
     void unlist() noexcept;
 
 private:
     LivingBroadphase* next_ = nullptr;
-    bool isListed_ = true;
 };
 
 }  // namespace detail::inline HASHPHASE_BULLET_NAMESPACE
