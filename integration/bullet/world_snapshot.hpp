@@ -14,17 +14,22 @@
 //           Joints with their motors, limits and impulses. Ghosts and characters. Gravity, the solver's settings
 //           and its seed, the time that is left of a step. The broadphase, its grid, pairs and sweeps.
 // What is not  What is the program's: user pointers and indices, joint feedback, debug colours, fields of classes
-//           derived from Bullet's. Motion states are told where their bodies are. Shapes: only which one an object
-//           has.
+//           derived from Bullet's. Motion states of dynamic bodies are told where these are; those of kinematic
+//           bodies tell it to Bullet, and are the program's to put back. Of shapes: only which one an object has.
 // Refused   by a sentence that names it: soft bodies, multibodies, actions other than btKinematicCharacterController
 //           (btRaycastVehicle is one), pair caches other than PairCache, contact points with user data, solvers
 //           other than btSequentialImpulseConstraintSolver and those derived from it, joints of unknown types.
-// Who came  Objects, joints and characters that were added since are taken out of the world; delete them yourself.
-// Who went  Those removed since are needed: hand them over (Returned), or restore() says which are missing, and
-//           nothing has changed. An object that was removed and added again needs no handing over.
+// Who came  Objects, joints and characters that were added after save(): restore() takes them out of the world. They
+//           are the caller's, to delete or to add again.
+// Who went  Those that were removed after save(): the caller hands them over (Returned) and they are in the world
+//           again; or restore() says which one is missing, and has changed nothing. What was removed and added
+//           again is in the world, and need not be handed over.
+// Ids       A proxy's m_uniqueId is what it was. Those that were given after save() are given again.
 // Lifetime  Shapes must live as long as a snapshot in which an object has them. Compound shapes must be as they were.
 // Callbacks Contact callbacks are not told of contacts that come back or go, nor ghost callbacks of pairs.
-// Order     Save and restore between steps, outside of all callbacks (refused).
+// Order     Between steps. Callbacks of the broadphase and of its cache are refused. Tick callbacks and motion
+//           states cannot be told from the program, and must not save or restore: the step's forces are not
+//           cleared yet, and would come twice.
 // Memory    Keeps its own: to save again takes none in a frame like the last one. Where it runs out, std::bad_alloc
 //           is passed on: save() leaves the snapshot empty, restore() has changed nothing.
 // Threads   Needs the world and this object for itself.
@@ -79,11 +84,12 @@ public:
     /// not written: both sides must have equal ones.
     [[nodiscard]] std::string write(std::vector<std::byte>& bytes) const;
 
-    /// Takes what was written of a world with the same objects: each is the one whose proxy has the same unique id, as
-    /// have worlds that were made by equal calls; a joint is one of its type between its bodies, a character that of
-    /// its ghost. Those that are not in the world are handed over, in the order of the snapshot. Shapes are those that
-    /// objects have now. Returns what is wrong, in a sentence, and changes nothing then; else nothing: restore() puts
-    /// the world to what was read. Whatever the bytes, nothing worse comes of them than objects in odd places.
+    /// Takes what write() made of a world with the same objects, such as one that another computer built by the same
+    /// calls. Its objects are told by their proxies' unique ids, joints by their type and bodies, characters by their
+    /// ghosts. Objects that are not in this world are handed over in the order in which the sentence names their ids.
+    /// Shapes are those that objects have now. Returns what is wrong, in a sentence, and changes nothing then; else
+    /// nothing, and restore() puts the world to what was read: with the same `returned`. Whatever the bytes, nothing
+    /// worse comes of them than objects in odd places.
     [[nodiscard]] std::string read(std::span<const std::byte> bytes, btDiscreteDynamicsWorld& world,
                                    const SpatialHashBroadphase& broadphase,
                                    const Returned& returned = {});

@@ -15,6 +15,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -87,15 +88,19 @@ struct WorldImage {
                (bodies.capacity() + actions.capacity() + pointers.capacity() +
                 addedObjects.capacity() + addedJoints.capacity() + addedActions.capacity()) *
                    sizeof(void*) +
-               present.memoryBytes();
+               present.memoryBytes() + handedOver.memoryBytes();
     }
 
 private:
     template <class Saved, class Item, class AddressOf>
     void compare(const std::vector<Saved>& saved, const btAlignedObjectArray<Item*>& all,
-                 const AddressOf& addressOf, std::vector<Item*>& added) const;
+                 std::span<Item* const> returned, const AddressOf& addressOf,
+                 std::vector<Item*>& added) const;
     [[nodiscard]] bool isPresent(const void* pointer) const {
         return areAllPresent || present.contains(reinterpret_cast<std::uintptr_t>(pointer));
+    }
+    [[nodiscard]] bool isHandedOver(const void* pointer) const {
+        return handedOver.contains(reinterpret_cast<std::uintptr_t>(pointer));
     }
     void saveSettings(btDiscreteDynamicsWorld& world);
     [[nodiscard]] std::string readObjects(ByteReader& from, btDiscreteDynamicsWorld& world,
@@ -123,8 +128,9 @@ private:
     };
     std::vector<JointPlace> jointPlaces;  // scratch of read()
 
-    // Scratch of find(): the addresses of what is there; and what is to be taken out.
+    // Scratch of find(): the addresses of what is there and of what is handed over; and what is to be taken out.
     mutable FlatSet present;
+    mutable FlatSet handedOver;
     mutable bool areAllPresent = false;
     mutable std::vector<btCollisionObject*> addedObjects;
     mutable std::vector<btTypedConstraint*> addedJoints;

@@ -11,7 +11,8 @@
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
-#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <sstream>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
@@ -30,11 +31,6 @@ const char* nameOfType(int type) {
 
 std::uint64_t keyOf(const void* pointer) {
     return reinterpret_cast<std::uintptr_t>(pointer);
-}
-
-template <class Item>
-bool isAmong(std::span<Item* const> items, const void* item) {
-    return std::find(items.begin(), items.end(), item) != items.end();
 }
 
 }  // namespace
@@ -97,10 +93,11 @@ std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
 }
 
 // Those of the world whose addresses are not among the saved ones are listed as added; of the saved ones, `present`
-// has those that are there.
+// has those that are there, and `handedOver` what is returned.
 template <class Saved, class Item, class AddressOf>
 void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectArray<Item*>& all,
-                         const AddressOf& addressOf, std::vector<Item*>& added) const {
+                         std::span<Item* const> returned, const AddressOf& addressOf,
+                         std::vector<Item*>& added) const {
     added.clear();
     present.clear();
     bool areSame = saved.size() == static_cast<std::size_t>(all.size());
@@ -123,6 +120,10 @@ void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectA
     for (int i = 0; i < all.size(); ++i) {
         present.findOrInsert(keyOf(all[i]));
     }
+    handedOver.clear();
+    for (Item* const item : returned) {
+        handedOver.findOrInsert(keyOf(item));
+    }
 }
 
 std::string WorldImage::find(btDiscreteDynamicsWorld& world, const Returned& returned) const {
@@ -136,7 +137,7 @@ std::string WorldImage::find(btDiscreteDynamicsWorld& world, const Returned& ret
 std::string WorldImage::findObjects(btDiscreteDynamicsWorld& world,
                                     const Returned& returned) const {
     compare(
-        objects, world.getCollisionObjectArray(),
+        objects, world.getCollisionObjectArray(), returned.objects,
         [](const SavedObject& saved) { return saved.object; }, addedObjects);
     for (std::size_t i = 0; i < objects.size(); ++i) {
         const SavedObject& saved = objects[i];
@@ -145,7 +146,7 @@ std::string WorldImage::findObjects(btDiscreteDynamicsWorld& world,
             return "Object " + std::to_string(i) + " (unique id " + std::to_string(saved.uniqueId) +
                    ") " + what;
         };
-        if (!isThere && !isAmong(returned.objects, saved.object)) {
+        if (!isThere && !isHandedOver(saved.object)) {
             return sentence("was removed from the world since. Hand it over as Returned::objects.");
         }
         const btBroadphaseProxy* const proxy = saved.object->getBroadphaseHandle();
@@ -166,14 +167,14 @@ std::string WorldImage::findObjects(btDiscreteDynamicsWorld& world,
 
 std::string WorldImage::findJoints(btDiscreteDynamicsWorld& world, const Returned& returned) const {
     compare(
-        joints, WorldMembers::joints(world), [](const SavedJoint& saved) { return saved.joint; },
-        addedJoints);
+        joints, WorldMembers::joints(world), returned.joints,
+        [](const SavedJoint& saved) { return saved.joint; }, addedJoints);
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const SavedJoint& saved = joints[i];
         const auto sentence = [&](const char* what) {
             return "Joint " + std::to_string(i) + " was removed from the world since" + what;
         };
-        if (!isPresent(saved.joint) && !isAmong(returned.joints, saved.joint)) {
+        if (!isPresent(saved.joint) && !isHandedOver(saved.joint)) {
             return sentence(". Hand it over as Returned::joints.");
         }
         if (saved.joint->getConstraintType() != saved.type ||
@@ -187,10 +188,10 @@ std::string WorldImage::findJoints(btDiscreteDynamicsWorld& world, const Returne
 std::string WorldImage::findActions(btDiscreteDynamicsWorld& world,
                                     const Returned& returned) const {
     compare(
-        actions, WorldMembers::actions(world), [](btActionInterface* action) { return action; },
-        addedActions);
+        actions, WorldMembers::actions(world), returned.actions,
+        [](btActionInterface* action) { return action; }, addedActions);
     for (std::size_t i = 0; i < actions.size(); ++i) {
-        if (!isPresent(actions[i]) && !isAmong(returned.actions, actions[i])) {
+        if (!isPresent(actions[i]) && !isHandedOver(actions[i])) {
             return "Action " + std::to_string(i) +
                    " was removed from the world since. Hand it over as Returned::actions.";
         }
