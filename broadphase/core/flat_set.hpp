@@ -286,13 +286,9 @@ public:
     }
 
     /// See core/copy_parts.hpp.
-    void makeRoomFor(const FlatSet& from) { ensureCapacity(keys_, from.sizeLimit_); }
-    template <class Visit>
-    static void forEachPart(FlatSet& to, const FlatSet& from, const Visit& visit) {
-        visit(to.groups_, from.groups_);
-        visit(to.keys_, from.keys_);
-        visit(to.sizeLimit_, from.sizeLimit_);
-        visit(to.shift_, from.shift_);
+    void makeRoomFor(const FlatSet& from) {
+        ensureCapacity(groups_, from.groups_.size());
+        ensureCapacity(keys_, from.sizeLimit_);
     }
 
 private:

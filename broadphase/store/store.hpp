@@ -8,11 +8,11 @@
 #include <broadphase/core/query_scope.hpp>
 #include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
-#include <broadphase/geometry/padded_box.hpp>
 #include <broadphase/grid_config.hpp>
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/query_cost.hpp>
 #include <broadphase/regions.hpp>
+#include <broadphase/store/frame.hpp>
 #include <broadphase/store/move_scratch.hpp>
 #include <broadphase/store/population.hpp>
 #include <broadphase/store/settling.hpp>
@@ -33,35 +33,6 @@ namespace hashphase::detail {
 
 template <class Scalar>
 struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Motions;
-
-/// Boxes of the mobile proxies, by their place in Population::mobile, and what they have in common.
-template <class Scalar>
-struct Frame {
-    std::vector<PaddedBox<Scalar>> now;
-    std::vector<PaddedBox<Scalar>> before;    // as of the last update; where there are pairs
-    std::atomic<std::uint32_t> idleCount{0};  // of those that may rest
-    std::atomic<bool> someAreCalm{false};     // and change
-    // Which kinds of groups there are among the mobile ones, and those that have changed; perhaps more.
-    std::atomic<GroupKinds::Set> mobileKinds{0};
-    std::atomic<GroupKinds::Set> changedKinds{0};
-
-    std::vector<std::uint32_t> proxyIndices;  // scratch: of what is filed, or has a NaN
-    std::vector<PaddedBox<Scalar>> boxes;     // scratch: of what is filed
-
-    /// What is copied: core/copy_parts.hpp.
-    template <class Visit>
-    static void forEachPart(Frame& to, const Frame& from, const Visit& visit) {
-        visit(to.idleCount, from.idleCount);
-        visit(to.someAreCalm, from.someAreCalm);
-        visit(to.mobileKinds, from.mobileKinds);
-        visit(to.changedKinds, from.changedKinds);
-    }
-
-    [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return (now.capacity() + before.capacity() + boxes.capacity()) * sizeof(boxes[0]) +
-               proxyIndices.capacity() * sizeof(proxyIndices[0]);
-    }
-};
 
 template <class Scalar>
 struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Store {

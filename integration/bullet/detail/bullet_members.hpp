@@ -194,6 +194,11 @@ struct CompoundMembers : btCompoundCollisionAlgorithm {
     static int& revision(btCompoundCollisionAlgorithm& algorithm) {
         return algorithm.*(&CompoundMembers::m_compoundShapeRevision);
     }
+    /// Of one between two compounds.
+    static btHashedSimplePairCache& childPairs(btCollisionAlgorithm& algorithm) {
+        return *(static_cast<btCompoundCompoundCollisionAlgorithm&>(algorithm).*
+                 revealed(btCompoundCompoundCollisionAlgorithm_m_childCollisionAlgorithmCache()));
+    }
 };
 
 struct WorldMembers : btDiscreteDynamicsWorld {

@@ -31,6 +31,10 @@ namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 /// Frees the algorithm, if there is one. Nobody is told that its contacts have ended.
 void freeQuietly(btCollisionAlgorithm* algorithm, btDispatcher* dispatcher);
 
+[[nodiscard]] inline const btCollisionObject& clientOf(const btBroadphaseProxy* proxy) {
+    return *static_cast<const btCollisionObject*>(proxy->m_clientObject);
+}
+
 /// The shapes of the two objects of a pair.
 struct ShapePair {
     const btCollisionShape* a;

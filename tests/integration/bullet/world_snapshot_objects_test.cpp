@@ -4,14 +4,10 @@
 
 #include <integration/bullet/world_snapshot.hpp>
 
-#include <tests/integration/bullet/snapshot_worlds.hpp>
+#include <tests/integration/bullet/pool_world.hpp>
 #include <tests/support/count_allocations.hpp>
-#include <tests/support/forged_bytes.hpp>
-#include <tests/support/handlers.hpp>
 #include <tests/support/out_of_memory.hpp>
 
-#include <BulletCollision/CollisionDispatch/btGhostObject.h>
-#include <BulletDynamics/Character/btKinematicCharacterController.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
@@ -20,7 +16,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,91 +25,6 @@
 
 namespace hashphase::test {
 namespace {
-
-/// A floor, and bodies that may be in the world or not.
-struct PoolWorld {
-    explicit PoolWorld(PairOrder order = PairOrder::arrival, std::size_t count = 40)
-        : cache(order) {
-        world.addRigidBody(&floor);
-        for (std::size_t i = 0; i < count; ++i) {
-            btVector3 inertia(0, 0, 0);
-            shapeOf(i).calculateLocalInertia(1, inertia);
-            pool.push_back(std::make_unique<btRigidBody>(1, nullptr, &shapeOf(i), inertia));
-            pool.back()->setUserIndex(static_cast<int>(i));
-        }
-    }
-    ~PoolWorld() {
-        while (world.getNumConstraints() > 0) {
-            world.removeConstraint(world.getConstraint(0));
-        }
-        while (world.getNumCollisionObjects() > 0) {
-            world.removeCollisionObject(world.getCollisionObjectArray()[0]);
-        }
-    }
-    PoolWorld(const PoolWorld&) = delete;
-    PoolWorld& operator=(const PoolWorld&) = delete;
-
-    btCollisionShape& shapeOf(std::size_t i) {
-        return i % 3 == 0   ? static_cast<btCollisionShape&>(ball)
-               : i % 3 == 1 ? static_cast<btCollisionShape&>(box)
-                            : pill;
-    }
-    void add(std::size_t i, const btVector3& at) {
-        btRigidBody& body = *pool[i];
-        body.setLinearVelocity(btVector3(0, 0, 0));
-        body.setAngularVelocity(btVector3(0, 0, 0));
-        body.setCenterOfMassTransform(btTransform(btQuaternion(0, 0, 0, 1), at));
-        body.clearForces();
-        body.forceActivationState(ACTIVE_TAG);
-        body.setDeactivationTime(0);
-        world.addRigidBody(&body);
-    }
-    [[nodiscard]] bool isIn(std::size_t i) const { return pool[i]->isInWorld(); }
-
-    /// A frame in which bodies come and go, by the frame's number alone.
-    std::uint64_t play(std::uint64_t frame) {
-        Random random(frame);
-        for (std::size_t i = 0; i < pool.size(); ++i) {
-            if (!random.chance(0.06)) {
-                continue;
-            }
-            const auto x = static_cast<btScalar>(random.between(-2, 2));
-            const auto y = static_cast<btScalar>(random.between(1, 4));
-            if (!isIn(i)) {
-                add(i, btVector3(x, y, x - y));
-            } else if (random.chance(0.5)) {
-                world.removeRigidBody(pool[i].get());
-            } else {
-                world.refreshBroadphaseProxy(pool[i].get());
-            }
-        }
-        world.stepSimulation(btScalar(1) / 60, 0);
-        return wholeState(world);
-    }
-    std::string save(WorldSnapshot& snapshot) { return snapshot.save(world, broadphase); }
-    std::string restore(const WorldSnapshot& snapshot) {
-        std::vector<btCollisionObject*> out;
-        for (const auto& body : pool) {
-            if (!body->isInWorld()) {
-                out.push_back(body.get());
-            }
-        }
-        return snapshot.restore(world, broadphase, {.objects = out});
-    }
-
-    btBoxShape ground{btVector3(10, 1, 10)};
-    btSphereShape ball{btScalar(0.5)};
-    btBoxShape box{btVector3(0.4F, 0.5F, 0.6F)};
-    btCapsuleShape pill{btScalar(0.3), btScalar(0.5)};
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    PairCache cache;
-    SpatialHashBroadphase broadphase{&cache};
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
-    btRigidBody floor{0, nullptr, &ground};
-    std::vector<std::unique_ptr<btRigidBody>> pool;
-};
 
 class Churn : public testing::TestWithParam<PairOrder> {};
 
@@ -189,21 +99,6 @@ INSTANTIATE_TEST_SUITE_P(Orders, Churn, testing::Values(PairOrder::arrival, Pair
                          [](const auto& order) {
                              return order.param == PairOrder::arrival ? "Arrival" : "Canonical";
                          });
-
-/// A world with a few bodies in it, after some steps.
-struct FewBodies : PoolWorld {
-    FewBodies() {
-        for (std::size_t i = 0; i < 6; ++i) {
-            add(i, btVector3(0, static_cast<btScalar>(i) + 1, 0));
-        }
-        for (int i = 0; i < 40; ++i) {
-            world.stepSimulation(btScalar(1) / 60, 0);
-        }
-    }
-    std::string restoreWithout(const WorldSnapshot& snapshot, const Returned& returned = {}) {
-        return snapshot.restore(world, broadphase, returned);
-    }
-};
 
 TEST(WorldSnapshot, TakesOutWhatWasAddedSince) {
     FewBodies few;
@@ -438,104 +333,6 @@ TEST(WorldSnapshot, RefusesOtherPairCachesSolversAndMultibodies) {
     world.addMultiBody(&body);
     EXPECT_EQ(snapshot.save(world, broadphase), "The world has multibodies.");
     world.removeMultiBody(&body);
-}
-
-TEST(WorldSnapshot, IsReadWhereObjectsHaveToBeHandedOver) {
-    FewBodies few;
-    btHingeConstraint joint(*few.pool[0], *few.pool[1], btVector3(0, 1, 0), btVector3(0, -1, 0),
-                            btVector3(0, 0, 1), btVector3(0, 0, 1));
-    few.world.addConstraint(&joint, true);
-    few.pool[2]->setIgnoreCollisionCheck(few.pool[3].get(), true);
-    WorldSnapshot snapshot;
-    ASSERT_EQ(few.save(snapshot), "");
-    std::vector<std::byte> bytes;
-    ASSERT_EQ(snapshot.write(bytes), "");
-    const std::uint64_t state = wholeState(few.world);
-    few.world.removeConstraint(&joint);
-    few.world.removeRigidBody(few.pool[4].get());
-    few.world.removeRigidBody(few.pool[2].get());
-    WorldSnapshot received;
-    EXPECT_EQ(received.read(bytes, few.world, few.broadphase),
-              "Objects with these unique ids are not in the world; hand them over in this order: "
-              "4, 6.");
-    const std::array<btCollisionObject*, 2> objects{few.pool[2].get(), few.pool[4].get()};
-    EXPECT_NE(received.read(bytes, few.world, few.broadphase, {.objects = objects})
-                  .find("Hand it over as Returned::joints."),
-              std::string::npos);
-    btTypedConstraint* const joints = &joint;
-    const Returned returned{.objects = objects, .joints = {&joints, 1}};
-    ASSERT_EQ(received.read(bytes, few.world, few.broadphase, returned), "");
-    ASSERT_EQ(received.restore(few.world, few.broadphase, returned), "");
-    EXPECT_EQ(wholeState(few.world), state);
-    EXPECT_FALSE(few.pool[2]->checkCollideWith(few.pool[3].get()));
-}
-
-TEST(WorldSnapshot, IsNotReadIntoAnotherWorld) {
-    FewBodies few;
-    WorldSnapshot snapshot;
-    ASSERT_EQ(few.save(snapshot), "");
-    std::vector<std::byte> bytes;
-    ASSERT_EQ(snapshot.write(bytes), "");
-    WorldSnapshot received;
-    EXPECT_EQ(received.read({}, few.world, few.broadphase),
-              "The bytes are not a snapshot of a world.");
-    bytes[100] ^= std::byte{4};
-    EXPECT_EQ(received.read(bytes, few.world, few.broadphase),
-              "The bytes of a snapshot of a world have changed: their checksum is wrong.");
-    bytes[100] ^= std::byte{4};
-    PoolWorld empty;
-    EXPECT_NE(received.read(bytes, empty.world, empty.broadphase).find("2, 3, 4, 5, 6, 7"),
-              std::string::npos);
-    EXPECT_TRUE(received.isEmpty());
-    btGhostObject ghost;
-    ghost.setCollisionShape(&empty.ball);
-    empty.world.addCollisionObject(&ghost);
-    const std::array<btCollisionObject*, 5> five{empty.pool[0].get(), empty.pool[1].get(),
-                                                 empty.pool[2].get(), empty.pool[3].get(),
-                                                 empty.pool[4].get()};
-    EXPECT_EQ(received.read(bytes, empty.world, empty.broadphase, {.objects = five}),
-              "The object with the unique id 2 is not of the type, or does not have the compound "
-              "shape, that was saved.");
-    empty.world.removeCollisionObject(&ghost);
-}
-
-// Whatever they say: there is nothing that a stranger's bytes can break, but for where things are.
-TEST(WorldSnapshot, IsSoundOrRefusedWhateverItsBytesAre) {
-    FewBodies few;
-    btHingeConstraint joint(*few.pool[0], *few.pool[1], btVector3(0, 1, 0), btVector3(0, -1, 0),
-                            btVector3(0, 0, 1), btVector3(0, 0, 1));
-    few.world.addConstraint(&joint, true);
-    btCompoundShape compound;
-    compound.addChildShape(btTransform::getIdentity(), &few.ball);
-    btTransform beside = btTransform::getIdentity();
-    beside.setOrigin(btVector3(1, 0, 0));
-    compound.addChildShape(beside, &few.box);
-    few.pool[5]->setCollisionShape(&compound);
-    few.broadphase.shapeChanged(few.pool[5]->getBroadphaseHandle(), &few.dispatcher);
-    few.world.stepSimulation(btScalar(1) / 60, 0);
-    WorldSnapshot snapshot;
-    ASSERT_EQ(few.save(snapshot), "");
-    std::vector<std::byte> bytes;
-    ASSERT_EQ(snapshot.write(bytes), "");
-    const std::uint64_t state = wholeState(few.world);
-    const CaughtMessages messages;
-    Random random(7);
-    int read = 0;
-    for (int i = 0; i < 1500; ++i) {
-        std::vector<std::byte> forged = bytes;
-        forgeBytes(forged, random);
-        WorldSnapshot received;
-        if (received.read(forged, few.world, few.broadphase).empty()) {
-            ++read;
-            ASSERT_EQ(received.restore(few.world, few.broadphase), "");
-            few.world.stepSimulation(btScalar(1) / 60, 0);
-            ASSERT_EQ(few.restoreWithout(snapshot), "");
-            ASSERT_EQ(wholeState(few.world), state);
-        }
-    }
-    EXPECT_GT(read, 100);
-    few.world.removeConstraint(&joint);
-    few.world.removeRigidBody(few.pool[5].get());
 }
 
 TEST(WorldSnapshot, TakesNoMemoryInASteadyFrame) {

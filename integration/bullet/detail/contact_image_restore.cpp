@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Zlib
+
+// Makes algorithms own again what they owned.
+
+#include <integration/bullet/detail/contact_image.hpp>
+
+#include <broadphase/core/ensure_capacity.hpp>
+#include <integration/bullet/detail/algorithm_kind.hpp>
+#include <integration/bullet/detail/bullet_members.hpp>
+
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionDispatch/btHashedSimplePairCache.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+
+#include <new>
+#include <utility>
+
+namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+/// For Bullet's dispatcher, which makes a manifold for two objects and looks at their shapes. Whose it is, is set
+/// later.
+btPersistentManifold* newManifold(btDispatcher& dispatcher) {
+    struct Nobody : btCollisionObject {
+        btSphereShape itsShape{1};
+        Nobody() { setCollisionShape(&itsShape); }
+    };
+    static const Nobody nobody;
+    return dispatcher.getNewManifold(&nobody, &nobody);
+}
+
+/// Owns manifolds of an algorithm that is never run any more, and releases them in its order.
+class RetiredAlgorithm final : public btCollisionAlgorithm {
+public:
+    RetiredAlgorithm(const btCollisionAlgorithmConstructionInfo& info, int count)
+        : btCollisionAlgorithm(info) {
+        for (int i = 0; i < count; ++i) {
+            manifolds_.push_back(newManifold(*m_dispatcher));
+        }
+    }
+    ~RetiredAlgorithm() override {
+        for (int i = 0; i < manifolds_.size(); ++i) {
+            m_dispatcher->releaseManifold(manifolds_[i]);
+        }
+    }
+    void processCollision(const btCollisionObjectWrapper* /*a*/,
+                          const btCollisionObjectWrapper* /*b*/, const btDispatcherInfo& /*info*/,
+                          btManifoldResult* /*result*/) override {}
+    btScalar calculateTimeOfImpact(btCollisionObject* /*a*/, btCollisionObject* /*b*/,
+                                   const btDispatcherInfo& /*info*/,
+                                   btManifoldResult* /*result*/) override {
+        return 1;
+    }
+    void getAllContactManifolds(btManifoldArray& found) override {
+        for (int i = 0; i < manifolds_.size(); ++i) {
+            found.push_back(manifolds_[i]);
+        }
+    }
+
+private:
+    btManifoldArray manifolds_;
+};
+
+}  // namespace
+
+void freeQuietly(btCollisionAlgorithm* algorithm, btDispatcher* dispatcher) {
+    if (algorithm == nullptr) {
+        return;
+    }
+    btManifoldArray manifolds;
+    algorithm->getAllContactManifolds(manifolds);
+    for (int i = 0; i < manifolds.size(); ++i) {
+        manifolds[i]->setNumContacts(0);
+    }
+    algorithm->~btCollisionAlgorithm();
+    dispatcher->freeCollisionAlgorithm(algorithm);
+}
+
+/// Makes algorithms own what they owned.
+class ContactImage::Builder {
+public:
+    Builder(const ContactImage& image, btCollisionDispatcher& dispatcher)
+        : image_(image), dispatcher_(dispatcher) {}
+
+    /// `present` may be null; it is freed where it is of no use.
+    [[nodiscard]] btCollisionAlgorithm* build(btCollisionAlgorithm* present,
+                                              const btCollisionObjectWrapper& a,
+                                              const btCollisionObjectWrapper& b) {
+        if (next() == 0) {
+            freeQuietly(present, &dispatcher_);
+            return nullptr;
+        }
+        switch (kindOf(*a.getCollisionShape(), *b.getCollisionShape())) {
+            case AlgorithmKind::leaf:
+                return buildLeaf(present, a, b);
+            case AlgorithmKind::compound:
+                return buildCompound(present, a, b);
+            case AlgorithmKind::twoCompounds:
+            default: {
+                btCollisionAlgorithm* const algorithm = buildCompound(present, a, b);
+                buildChildPairs(*algorithm, a, b);
+                return algorithm;
+            }
+        }
+    }
+
+    /// Notes which of these each manifold of then is now.
+    void take(const btAlignedObjectArray<btPersistentManifold*>& manifolds, int count) {
+        for (int i = 0; i < count; ++i) {
+            const auto place = static_cast<std::size_t>(next());
+            if (i < manifolds.size()) {
+                image_.manifolds_[place] = manifolds[i];
+            }
+        }
+    }
+
+    [[nodiscard]] int next() { return image_.owned_[image_.at_++]; }
+
+private:
+    [[nodiscard]] btCollisionAlgorithm* make(const btCollisionObjectWrapper& a,
+                                             const btCollisionObjectWrapper& b) {
+        // Some make their manifold at once, but not where the dispatcher leaves the pair out.
+        for (const btCollisionObjectWrapper* wrapper : {&a, &b}) {
+            auto& object = const_cast<btCollisionObject&>(*wrapper->getCollisionObject());
+            ObjectMembers::activationState(object) = ACTIVE_TAG;
+            ObjectMembers::checksCollisions(object) = 0;
+        }
+        return dispatcher_.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
+    }
+
+    [[nodiscard]] int countManifolds(btCollisionAlgorithm& algorithm) {
+        found_.resizeNoInitialize(0);
+        algorithm.getAllContactManifolds(found_);
+        return found_.size();
+    }
+
+    [[nodiscard]] btCollisionAlgorithm* buildLeaf(btCollisionAlgorithm* present,
+                                                  const btCollisionObjectWrapper& a,
+                                                  const btCollisionObjectWrapper& b) {
+        const int count = next();
+        if (present != nullptr && countManifolds(*present) != count) {
+            freeQuietly(std::exchange(present, nullptr), &dispatcher_);
+        }
+        if (present == nullptr) {
+            present = make(a, b);
+            if (countManifolds(*present) < count) {
+                runFarApart(*present, a, b);
+            }
+        }
+        static_cast<void>(countManifolds(*present));
+        take(found_, count);
+        return present;
+    }
+
+    // Others make their manifold when they first run: with the two so far apart that they find no contact.
+    void runFarApart(btCollisionAlgorithm& algorithm, const btCollisionObjectWrapper& a,
+                     const btCollisionObjectWrapper& b) {
+        const auto radiusOf = [](const btCollisionObjectWrapper& wrapper) {
+            btVector3 center;
+            btScalar radius = 0;
+            wrapper.getCollisionShape()->getBoundingSphere(center, radius);
+            return radius + center.length();
+        };
+        const btTransform near = btTransform::getIdentity();
+        btTransform far = near;
+        far.setOrigin(btVector3(4 * (radiusOf(a) + radiusOf(b)) + 1, 0, 0));
+        const btCollisionObjectWrapper there(nullptr, a.getCollisionShape(), a.getCollisionObject(),
+                                             near, -1, -1);
+        const btCollisionObjectWrapper away(nullptr, b.getCollisionShape(), b.getCollisionObject(),
+                                            far, -1, -1);
+        btManifoldResult result(&there, &away);
+        algorithm.processCollision(&there, &away, btDispatcherInfo(), &result);
+    }
+
+    [[nodiscard]] btCollisionAlgorithm* buildCompound(btCollisionAlgorithm* present,
+                                                      const btCollisionObjectWrapper& a,
+                                                      const btCollisionObjectWrapper& b) {
+        const bool isFirst = a.getCollisionShape()->isCompound();
+        const btCollisionObjectWrapper& compound = isFirst ? a : b;
+        const btCollisionObjectWrapper& other = isFirst ? b : a;
+        const int count = next();
+        if (present != nullptr && !isUpToDate(*present, a, b)) {
+            freeQuietly(std::exchange(present, nullptr), &dispatcher_);
+        }
+        if (present == nullptr) {
+            present = make(a, b);
+        }
+        auto& children =
+            CompoundMembers::children(static_cast<btCompoundCollisionAlgorithm&>(*present));
+        children.resize(count, nullptr);
+        for (int i = 0; i < count; ++i) {
+            children[i] = build(children[i], childOf(compound, i), other);
+        }
+        return present;
+    }
+
+    [[nodiscard]] static bool isUpToDate(btCollisionAlgorithm& algorithm,
+                                         const btCollisionObjectWrapper& a,
+                                         const btCollisionObjectWrapper& b) {
+        const auto revisionOf = [](const btCollisionObjectWrapper& wrapper) {
+            return compoundOf(*wrapper.getCollisionShape()).getUpdateRevision();
+        };
+        const bool isFirst = a.getCollisionShape()->isCompound();
+        if (isFirst && b.getCollisionShape()->isCompound()) {
+            const auto& two = static_cast<btCompoundCompoundCollisionAlgorithm&>(algorithm);
+            return two.*revealed(btCompoundCompoundCollisionAlgorithm_m_compoundShapeRevision0()) ==
+                       revisionOf(a) &&
+                   two.*revealed(btCompoundCompoundCollisionAlgorithm_m_compoundShapeRevision1()) ==
+                       revisionOf(b);
+        }
+        return CompoundMembers::revision(static_cast<btCompoundCollisionAlgorithm&>(algorithm)) ==
+               revisionOf(isFirst ? a : b);
+    }
+
+    [[nodiscard]] static btCollisionObjectWrapper childOf(const btCollisionObjectWrapper& compound,
+                                                          int child) {
+        const btCompoundShape& shape = compoundOf(*compound.getCollisionShape());
+        return btCollisionObjectWrapper(&compound, shape.getChildShape(child),
+                                        compound.getCollisionObject(), compound.getWorldTransform(),
+                                        -1, child);
+    }
+
+    void buildChildPairs(btCollisionAlgorithm& algorithm, const btCollisionObjectWrapper& a,
+                         const btCollisionObjectWrapper& b) {
+        btHashedSimplePairCache& pairs = CompoundMembers::childPairs(algorithm);
+        btSimplePairArray present;
+        for (int k = 0; k < pairs.GetCount(); ++k) {
+            present.push_back(pairs.getOverlappingPairArray()[k]);
+        }
+        pairs.removeAllPairs();
+        const int count = next();
+        for (int i = 0; i < count; ++i) {
+            const int childOfA = next();
+            const int childOfB = next();
+            btCollisionAlgorithm* child = nullptr;
+            for (int k = 0; k < present.size(); ++k) {
+                if (present[k].m_indexA == childOfA && present[k].m_indexB == childOfB) {
+                    child = static_cast<btCollisionAlgorithm*>(
+                        std::exchange(present[k].m_userPointer, nullptr));
+                }
+            }
+            btSimplePair* const pair = pairs.addOverlappingPair(childOfA, childOfB);
+            pair->m_userPointer = build(child, childOf(a, childOfA), childOf(b, childOfB));
+        }
+        for (int k = 0; k < present.size(); ++k) {
+            freeQuietly(static_cast<btCollisionAlgorithm*>(present[k].m_userPointer), &dispatcher_);
+        }
+    }
+
+    const ContactImage& image_;
+    btCollisionDispatcher& dispatcher_;
+    btManifoldArray found_;
+};
+
+void ContactImage::makeRoom() const {
+    ensureCapacity(manifolds_, heads_.size());
+    ensureCapacity(listed_, heads_.size());
+}
+
+void ContactImage::beginRestore() const {
+    at_ = 0;
+    manifolds_.assign(heads_.size(), nullptr);
+}
+
+btCollisionAlgorithm* ContactImage::restore(btCollisionAlgorithm* present,
+                                            const btBroadphasePair& pair,
+                                            btCollisionDispatcher& dispatcher) const {
+    const btCollisionObject& a = clientOf(pair.m_pProxy0);
+    const btCollisionObject& b = clientOf(pair.m_pProxy1);
+    const btCollisionObjectWrapper wrapperOfA(nullptr, a.getCollisionShape(), &a,
+                                              a.getWorldTransform(), -1, -1);
+    const btCollisionObjectWrapper wrapperOfB(nullptr, b.getCollisionShape(), &b,
+                                              b.getWorldTransform(), -1, -1);
+    return Builder(*this, dispatcher).build(present, wrapperOfA, wrapperOfB);
+}
+
+btCollisionAlgorithm* ContactImage::restoreRetired(btCollisionDispatcher& dispatcher) const {
+    Builder builder(*this, dispatcher);
+    const int count = builder.next();
+    btCollisionAlgorithmConstructionInfo info(&dispatcher, 0);
+    void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(RetiredAlgorithm));
+    auto* const algorithm = new (memory) RetiredAlgorithm(info, count);
+    btManifoldArray manifolds;
+    algorithm->getAllContactManifolds(manifolds);
+    builder.take(manifolds, count);
+    return algorithm;
+}
+
+void ContactImage::restore(btAlignedObjectArray<btPersistentManifold*>& manifolds,
+                           btCollisionDispatcher& dispatcher) const {
+    Builder builder(*this, dispatcher);
+    const int count = builder.next();
+    for (int i = manifolds.size(); i-- > count;) {
+        manifolds[i]->setNumContacts(0);
+        dispatcher.releaseManifold(manifolds[i]);
+        manifolds.pop_back();
+    }
+    while (manifolds.size() < count) {
+        manifolds.push_back(newManifold(dispatcher));
+    }
+    builder.take(manifolds, count);
+}
+
+// Should there be more manifolds than were saved, which bytes of a stranger's can bring about, they come last.
+void ContactImage::endRestore(btCollisionDispatcher& dispatcher) const {
+    btPersistentManifold** const list = dispatcher.getInternalManifoldPointer();
+    listed_.assign(list, list + dispatcher.getNumManifolds());
+    for (btPersistentManifold* manifold : listed_) {
+        manifold->m_index1a = -1;
+    }
+    int count = 0;
+    const auto enlist = [&](btPersistentManifold& manifold) {
+        list[count] = &manifold;
+        manifold.m_index1a = count++;
+    };
+    const btManifoldPoint* point = points_.begin();
+    for (std::size_t i = 0; i < heads_.size(); ++i) {
+        if (manifolds_[i] != nullptr) {
+            fill(*manifolds_[i], heads_[i], point);
+            enlist(*manifolds_[i]);
+        }
+        point += heads_[i].pointCount;
+    }
+    for (btPersistentManifold* manifold : listed_) {
+        if (manifold->m_index1a < 0) {
+            enlist(*manifold);
+        }
+    }
+}
+
+void ContactImage::fill(btPersistentManifold& manifold, const Head& head,
+                        const btManifoldPoint* points) {
+    manifold.setBodies(head.bodies[0], head.bodies[1]);
+    manifold.setContactBreakingThreshold(head.breakingThreshold);
+    manifold.setContactProcessingThreshold(head.processingThreshold);
+    manifold.m_companionIdA = head.companions[0];
+    manifold.m_companionIdB = head.companions[1];
+    manifold.setNumContacts(head.pointCount);
+    for (int k = 0; k < head.pointCount; ++k) {
+        manifold.getContactPoint(k) = points[k];
+    }
+}
+
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Zlib
+
+// Snapshots of grids as bytes: they have the same results where they are read, and no bytes break anything.
+
+#include <broadphase/grid_snapshot.hpp>
+
+#include <tests/broadphase/grid_world.hpp>
+#include <tests/support/forged_bytes.hpp>
+#include <tests/support/handlers.hpp>
+#include <tests/support/random.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hashphase::test {
+namespace {
+
+/// As bytes and back.
+template <class Scalar>
+[[nodiscard]] GridSnapshot<Scalar> sent(const GridSnapshot<Scalar>& snapshot) {
+    std::vector<std::byte> bytes;
+    snapshot.write(bytes);
+    GridSnapshot<Scalar> received;
+    EXPECT_EQ(received.read(bytes), "");
+    std::vector<std::byte> again;
+    received.write(again);
+    EXPECT_EQ(bytes, again);
+    return received;
+}
+
+// Costs, and the order in which queries find proxies, are not sent.
+template <class Scalar>
+void expectTheSameWhereItIsSent(const Play& play) {
+    GridWorld<Scalar> world(play, 7);
+    GridWorld<Scalar> elsewhere(play, 8);
+    Log log;
+    world.notesCosts = elsewhere.notesCosts = false;
+    world.play(1, 30, log);
+    for (std::uint64_t round = 0; round < 24; ++round) {
+        SCOPED_TRACE(round);
+        typename GridWorld<Scalar>::Saved saved;
+        world.save(saved);
+        saved.snapshot = sent(saved.snapshot);
+        elsewhere.restore(saved);
+        Log here;
+        Log there;
+        world.play(100 + round, 1 + static_cast<int>(round % 12), here);
+        elsewhere.play(100 + round, 1 + static_cast<int>(round % 12), there);
+        ASSERT_EQ(here, there);
+    }
+}
+
+class GridSnapshotBytes : public testing::TestWithParam<Play> {};
+
+TEST_P(GridSnapshotBytes, HoldAllThatMattersInSinglePrecision) {
+    expectTheSameWhereItIsSent<float>(GetParam());
+}
+TEST_P(GridSnapshotBytes, HoldAllThatMattersInDoublePrecision) {
+    expectTheSameWhereItIsSent<double>(GetParam());
+}
+INSTANTIATE_TEST_SUITE_P(All, GridSnapshotBytes, testing::ValuesIn(plays()),
+                         [](const auto& play) { return play.param.name; });
+
+TEST(GridSnapshot, RefusesBytesThatAreTornOrChanged) {
+    BetweenTwoStates between;
+    std::vector<std::byte> bytes;
+    between.before.snapshot.write(bytes);
+    GridSnapshot<float> snapshot;
+    EXPECT_EQ(snapshot.read({}), "The bytes are not a snapshot of a grid.");
+    std::vector<std::byte> other = bytes;
+    other.pop_back();
+    EXPECT_NE(snapshot.read(other).find("were written"), std::string::npos);
+    other = bytes;
+    other[bytes.size() / 2] ^= std::byte{1};
+    EXPECT_EQ(snapshot.read(other),
+              "The bytes of a snapshot of a grid have changed: their checksum is wrong.");
+    other = bytes;
+    other[8] = std::byte{9};
+    EXPECT_EQ(snapshot.read(other),
+              "The bytes are a snapshot of a grid of version 9; this "
+              "library reads version 1.");
+    GridSnapshot<double> ofDouble;
+    EXPECT_EQ(ofDouble.read(bytes), "The bytes are a snapshot of a grid of the other precision.");
+    EXPECT_TRUE(snapshot.isEmpty());
+    EXPECT_EQ(snapshot.read(bytes), "");
+}
+
+TEST(GridSnapshot, IsSoundOrRefusedWhateverItsBytesAre) {
+    const CaughtMessages messages;
+    Random random(11);
+    int read = 0;
+    for (const Play& play : plays()) {
+        GridWorld<float> world(play, 3);
+        Log log;
+        world.notesCosts = false;
+        world.play(1, 20, log);
+        GridWorld<float>::Saved saved;
+        world.save(saved);
+        std::vector<std::byte> bytes;
+        saved.snapshot.write(bytes);
+        for (int i = 0; i < 400; ++i) {
+            GridSnapshot<float> snapshot;
+            std::vector<std::byte> forged = bytes;
+            forgeBytes(forged, random);
+            if (snapshot.read(forged).empty()) {
+                GridWorld<float> other({play.name, 0, play.moving, play.step, play.extent,
+                                        play.refused, 0, 0, play.hasPairs, true, play.config},
+                                       1);
+                const bool fits = play.hasPairs ? snapshot.faultFor(*other.pairs).empty()
+                                                : snapshot.faultFor(other.grid).empty();
+                if (!fits) {
+                    continue;
+                }
+                ++read;
+                if (play.hasPairs) {
+                    snapshot.restore(*other.pairs);
+                } else {
+                    snapshot.restore(other.grid);
+                }
+                EXPECT_EQ(other.grid.validate(), "");
+                other.update(log);  // and validates
+                other.update(log);
+            }
+        }
+    }
+    EXPECT_GT(read, 100);
+}
+
+}  // namespace
+}  // namespace hashphase::test
