@@ -88,7 +88,7 @@ struct WorldImage {
                (bodies.capacity() + actions.capacity() + pointers.capacity() +
                 addedObjects.capacity() + addedJoints.capacity() + addedActions.capacity()) *
                    sizeof(void*) +
-               present.memoryBytes() + handedOver.memoryBytes();
+               present.memoryBytes() + brought.memoryBytes();
     }
 
 private:
@@ -100,7 +100,7 @@ private:
         return areAllPresent || present.contains(reinterpret_cast<std::uintptr_t>(pointer));
     }
     [[nodiscard]] bool isHandedOver(const void* pointer) const {
-        return handedOver.contains(reinterpret_cast<std::uintptr_t>(pointer));
+        return brought.contains(reinterpret_cast<std::uintptr_t>(pointer));
     }
     void saveSettings(btDiscreteDynamicsWorld& world);
     [[nodiscard]] std::string readObjects(ByteReader& from, btDiscreteDynamicsWorld& world,
@@ -130,7 +130,7 @@ private:
 
     // Scratch of find(): the addresses of what is there and of what is handed over; and what is to be taken out.
     mutable FlatSet present;
-    mutable FlatSet handedOver;
+    mutable FlatSet brought;
     mutable bool areAllPresent = false;
     mutable std::vector<btCollisionObject*> addedObjects;
     mutable std::vector<btTypedConstraint*> addedJoints;

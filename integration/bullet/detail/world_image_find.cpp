@@ -93,7 +93,7 @@ std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
 }
 
 // Those of the world whose addresses are not among the saved ones are listed as added; of the saved ones, `present`
-// has those that are there, and `handedOver` what is returned.
+// has those that are there, and `brought` what is returned.
 template <class Saved, class Item, class AddressOf>
 void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectArray<Item*>& all,
                          std::span<Item* const> returned, const AddressOf& addressOf,
@@ -120,9 +120,9 @@ void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectA
     for (int i = 0; i < all.size(); ++i) {
         present.findOrInsert(keyOf(all[i]));
     }
-    handedOver.clear();
+    brought.clear();
     for (Item* const item : returned) {
-        handedOver.findOrInsert(keyOf(item));
+        brought.findOrInsert(keyOf(item));
     }
 }
 
