@@ -149,6 +149,16 @@ namespace hashphase::detail {
 #endif
 }
 
+/// The same for all of a large object.
+template <class Object>
+[[HASHPHASE_ALWAYS_INLINE]] inline void prefetchAll(const Object& object) noexcept {
+    constexpr std::size_t kCacheLine = 64;
+    const auto* const begin = reinterpret_cast<const char*>(&object);
+    for (std::size_t at = 0; at < sizeof(Object); at += kCacheLine) {
+        prefetch(begin + at);
+    }
+}
+
 /// The number of the lowest bit that is set in a word that is not 0.
 template <std::unsigned_integral Word>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::uint32_t lowestBit(Word word) noexcept {

@@ -22,6 +22,12 @@ public:
             room_.resize(count);
         }
     }
+    /// Makes room for `count` items more than there are; grows by half.
+    void reserveMore(std::size_t count) {
+        if (room_.size() - size_ < count) {
+            reserve(room_.size() + room_.size() / 2 + count);
+        }
+    }
     // NOLINTNEXTLINE(readability-identifier-naming): named as std::vector's
     [[HASHPHASE_ALWAYS_INLINE]] void push_back(const Item& item) noexcept {
         HASHPHASE_ASSERT(size_ < room_.size(), "There is room for the item.");

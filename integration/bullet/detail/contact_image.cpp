@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/detail/contact_image.hpp>
 
-#include <broadphase/diagnostics.hpp>
+#include <broadphase/core/compiler.hpp>
 #include <integration/bullet/detail/algorithm_kind.hpp>
 #include <integration/bullet/detail/bullet_members.hpp>
 
@@ -58,9 +58,8 @@ public:
 
     void write(const btAlignedObjectArray<btPersistentManifold*>& manifolds) {
         image_.owned_.push_back(manifolds.size());
-        image_.ownedCount_ += manifolds.size();
         for (int i = 0; i < manifolds.size(); ++i) {
-            image_.owned_.push_back(manifolds[i]->m_index1a);
+            image_.manifolds_.push_back(manifolds[i]);
         }
     }
 
@@ -72,7 +71,7 @@ void ContactImage::begin() {
     owned_.clear();
     heads_.clear();
     points_.clear();
-    ownedCount_ = 0;
+    manifolds_.clear();
 }
 
 void ContactImage::save(const btBroadphasePair& pair) {
@@ -92,31 +91,32 @@ void ContactImage::save(const btAlignedObjectArray<btPersistentManifold*>& manif
     Writer(*this).write(manifolds);
 }
 
-std::string ContactImage::end(btCollisionDispatcher& dispatcher) {
-    const int count = dispatcher.getNumManifolds();
-    if (count != ownedCount_) {
+std::string ContactImage::end(const btCollisionDispatcher& dispatcher) {
+    const auto count = static_cast<std::size_t>(dispatcher.getNumManifolds());
+    if (count != manifolds_.size()) {
         std::ostringstream sentence;
-        sentence << "Of " << count << " contact manifolds, " << count - ownedCount_
+        sentence << "Of " << count << " contact manifolds, " << count - manifolds_.size()
                  << " belong to no pair of the world, its ghosts or its predicted contacts.";
         return sentence.str();
     }
-    std::size_t pointCount = 0;
-    for (int i = 0; i < count; ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    heads_.reserve(count);
+    bool haveUserData = false;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + kManifoldsAhead < count) {
+            prefetchAll(*manifolds_[i + kManifoldsAhead]);
+        }
+        const btPersistentManifold& manifold = *manifolds_[i];
         heads_.push_back({{manifold.getBody0(), manifold.getBody1()},
                           manifold.getContactBreakingThreshold(),
                           manifold.getContactProcessingThreshold(),
                           {manifold.m_companionIdA, manifold.m_companionIdB},
+                          manifold.m_index1a,
                           manifold.getNumContacts()});
-        pointCount += static_cast<std::size_t>(manifold.getNumContacts());
-    }
-    points_.reserve(pointCount);
-    bool haveUserData = false;
-    for (int i = 0; i < count; ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+        points_.reserveMore(MANIFOLD_CACHE_SIZE);
         for (int k = 0; k < manifold.getNumContacts(); ++k) {
-            points_.push_back(manifold.getContactPoint(k));
-            haveUserData |= manifold.getContactPoint(k).m_userPersistentData != nullptr;
+            const btManifoldPoint& point = manifold.getContactPoint(k);
+            points_.push_back(point);
+            haveUserData |= point.m_userPersistentData != nullptr;
         }
     }
     return haveUserData
@@ -127,7 +127,7 @@ std::string ContactImage::end(btCollisionDispatcher& dispatcher) {
 std::size_t ContactImage::memoryBytes() const noexcept {
     return sizeof(*this) + owned_.capacity() * sizeof(int) + heads_.capacity() * sizeof(Head) +
            points_.capacity() * sizeof(btManifoldPoint) +
-           (manifolds_.capacity() + listed_.capacity()) * sizeof(manifolds_[0]) +
+           manifolds_.capacity() * sizeof(manifolds_[0]) +
            static_cast<std::size_t>(found_.capacity()) * sizeof(btPersistentManifold*);
 }
 

@@ -52,7 +52,7 @@ public:
     /// Adds manifolds that no algorithm owns.
     void save(const btAlignedObjectArray<btPersistentManifold*>& manifolds);
     /// All algorithms have been added. Says what is left over; empty when nothing is.
-    [[nodiscard]] std::string end(btCollisionDispatcher& dispatcher);
+    [[nodiscard]] std::string end(const btCollisionDispatcher& dispatcher);
 
     /// So that beginRestore() takes no memory.
     void makeRoom() const;
@@ -83,6 +83,7 @@ private:
         btScalar breakingThreshold;
         btScalar processingThreshold;
         int companions[2];
+        int place;  // in the dispatcher's list
         int pointCount;
     };
     class Writer;
@@ -92,18 +93,19 @@ private:
     static void fill(btPersistentManifold& manifold, const Head& head,
                      const btManifoldPoint* points);
 
-    // What algorithms own, by places in the dispatcher's list; of a compound's, first how many children it has,
-    // then for each whether it has one, and that.
+    // Fetched while others are copied: more would be more than processors fetch at a time.
+    static constexpr std::size_t kManifoldsAhead = 2;
+
+    // How many manifolds algorithms own; of a compound's, first how many children it has, then for each whether it
+    // has one, and that.
     std::vector<int> owned_;
-    std::vector<Head> heads_;  // in the dispatcher's order
+    std::vector<Head> heads_;  // in the order of their owners
     RoomyList<btManifoldPoint> points_;
-    int ownedCount_ = 0;
 
     // Scratch.
     btManifoldArray found_;
     mutable std::size_t at_ = 0;                            // in owned_
-    mutable std::vector<btPersistentManifold*> manifolds_;  // by places in heads_
-    mutable std::vector<btPersistentManifold*> listed_;     // by the dispatcher now
+    mutable std::vector<btPersistentManifold*> manifolds_;  // as heads_; null where none was made
 };
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

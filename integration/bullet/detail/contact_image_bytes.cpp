@@ -18,8 +18,7 @@ namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 /// Goes through what algorithms own as restore() does.
 class ContactImage::Checker {
 public:
-    explicit Checker(const ContactImage& image)
-        : image_(image), hasOwner_(image.heads_.size(), 0) {}
+    explicit Checker(const ContactImage& image) : image_(image) {}
 
     [[nodiscard]] bool isAlgorithm(const btCollisionShape& a, const btCollisionShape& b) {
         const int has = next();
@@ -45,21 +44,20 @@ public:
 
     [[nodiscard]] bool areManifolds(int most) {
         const int count = next();
-        if (count < 0 || count > most) {
-            return false;
-        }
-        for (int i = 0; i < count; ++i) {
-            const auto place = static_cast<std::size_t>(next());
-            if (place >= hasOwner_.size() || std::exchange(hasOwner_[place], 1) != 0) {
+        ownedCount_ += static_cast<std::size_t>(std::max(count, 0));
+        return 0 <= count && count <= most;
+    }
+
+    /// Whether that was all, and each manifold has a place of its own.
+    [[nodiscard]] bool isAtEnd() const {
+        std::vector<char> isTaken(image_.heads_.size(), 0);
+        for (const Head& head : image_.heads_) {
+            const auto place = static_cast<std::size_t>(head.place);
+            if (place >= isTaken.size() || std::exchange(isTaken[place], 1) != 0) {
                 return false;
             }
         }
-        return true;
-    }
-
-    [[nodiscard]] bool isAtEnd() const {
-        return at_ == image_.owned_.size() &&
-               std::find(hasOwner_.begin(), hasOwner_.end(), 0) == hasOwner_.end();
+        return at_ == image_.owned_.size() && ownedCount_ == isTaken.size();
     }
 
 private:
@@ -82,7 +80,7 @@ private:
     [[nodiscard]] int next() { return at_ < image_.owned_.size() ? image_.owned_[at_++] : -1; }
 
     const ContactImage& image_;
-    std::vector<char> hasOwner_;  // by manifold
+    std::size_t ownedCount_ = 0;
     std::size_t at_ = 0;
 };
 
@@ -97,6 +95,7 @@ void ContactImage::write(ByteWriter& to, const ObjectNumbers& numbers) const {
         to.write(head.processingThreshold);
         to.write(head.companions[0]);
         to.write(head.companions[1]);
+        to.write(head.place);
         to.write(head.pointCount);
     }
     for (const btManifoldPoint& point : points_) {
@@ -114,7 +113,7 @@ bool ContactImage::read(ByteReader& from, std::span<btCollisionObject* const> ob
     owned_.resize(ownedCount);
     from.read(owned_.data(), ownedCount * sizeof(int));
     const auto headCount = from.read<std::uint32_t>();
-    constexpr std::size_t kHeadBytes = 5 * sizeof(int) + 2 * sizeof(btScalar);
+    constexpr std::size_t kHeadBytes = 6 * sizeof(int) + 2 * sizeof(btScalar);
     if (headCount > from.left() / kHeadBytes) {
         return false;
     }
@@ -127,6 +126,7 @@ bool ContactImage::read(ByteReader& from, std::span<btCollisionObject* const> ob
         head.processingThreshold = from.read<btScalar>();
         head.companions[0] = from.read<int>();
         head.companions[1] = from.read<int>();
+        head.place = from.read<int>();
         head.pointCount = from.read<int>();
         if (a >= objects.size() || b >= objects.size() || head.pointCount < 0 ||
             head.pointCount > MANIFOLD_CACHE_SIZE) {
@@ -145,13 +145,12 @@ bool ContactImage::read(ByteReader& from, std::span<btCollisionObject* const> ob
         restoreMembers(point, from);
         points_.push_back(point);
     }
-    ownedCount_ = static_cast<int>(headCount);
     Checker checker(*this);
     return std::ranges::all_of(shapesOfPairs,
                                [&](const ShapePair& shapes) {
                                    return checker.isAlgorithm(*shapes.a, *shapes.b);
                                }) &&
-           checker.areManifolds(ownedCount_) && checker.isAtEnd();
+           checker.areManifolds(static_cast<int>(headCount)) && checker.isAtEnd();
 }
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -4,6 +4,7 @@
 
 #include <integration/bullet/detail/contact_image.hpp>
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
 #include <integration/bullet/detail/algorithm_kind.hpp>
 #include <integration/bullet/detail/bullet_members.hpp>
@@ -14,7 +15,10 @@
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
+#include <algorithm>
+#include <limits>
 #include <new>
+#include <span>
 #include <utility>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
@@ -106,13 +110,10 @@ public:
         }
     }
 
-    /// Notes which of these each manifold of then is now.
+    /// Notes that these are the next manifolds of then.
     void take(const btAlignedObjectArray<btPersistentManifold*>& manifolds, int count) {
         for (int i = 0; i < count; ++i) {
-            const auto place = static_cast<std::size_t>(next());
-            if (i < manifolds.size()) {
-                image_.manifolds_[place] = manifolds[i];
-            }
+            image_.manifolds_.push_back(i < manifolds.size() ? manifolds[i] : nullptr);
         }
     }
 
@@ -256,12 +257,11 @@ private:
 
 void ContactImage::makeRoom() const {
     ensureCapacity(manifolds_, heads_.size());
-    ensureCapacity(listed_, heads_.size());
 }
 
 void ContactImage::beginRestore() const {
     at_ = 0;
-    manifolds_.assign(heads_.size(), nullptr);
+    manifolds_.clear();
 }
 
 btCollisionAlgorithm* ContactImage::restore(btCollisionAlgorithm* present,
@@ -303,29 +303,33 @@ void ContactImage::restore(btAlignedObjectArray<btPersistentManifold*>& manifold
     builder.take(manifolds, count);
 }
 
-// Should there be more manifolds than were saved, which bytes of a stranger's can bring about, they come last.
+// Should there be others than were saved, which bytes of a stranger's can bring about, they come last.
 void ContactImage::endRestore(btCollisionDispatcher& dispatcher) const {
-    btPersistentManifold** const list = dispatcher.getInternalManifoldPointer();
-    listed_.assign(list, list + dispatcher.getNumManifolds());
-    for (btPersistentManifold* manifold : listed_) {
-        manifold->m_index1a = -1;
+    const std::span list(dispatcher.getInternalManifoldPointer(),
+                         static_cast<std::size_t>(dispatcher.getNumManifolds()));
+    const bool areTheSame =
+        list.size() == manifolds_.size() && std::ranges::count(manifolds_, nullptr) == 0;
+    for (std::size_t i = 0; !areTheSame && i < list.size(); ++i) {
+        list[i]->m_index1a = std::numeric_limits<int>::max();
     }
-    int count = 0;
-    const auto enlist = [&](btPersistentManifold& manifold) {
-        list[count] = &manifold;
-        manifold.m_index1a = count++;
-    };
-    const btManifoldPoint* point = points_.begin();
-    for (std::size_t i = 0; i < heads_.size(); ++i) {
-        if (manifolds_[i] != nullptr) {
-            fill(*manifolds_[i], heads_[i], point);
-            enlist(*manifolds_[i]);
+    const btManifoldPoint* points = points_.begin();
+    for (std::size_t i = 0; i < manifolds_.size(); ++i) {
+        if (i + kManifoldsAhead < manifolds_.size() && manifolds_[i + kManifoldsAhead] != nullptr) {
+            prefetchAll(*manifolds_[i + kManifoldsAhead]);
         }
-        point += heads_[i].pointCount;
+        const Head& head = heads_[i];
+        if (manifolds_[i] != nullptr) {
+            fill(*manifolds_[i], head, points);
+        }
+        if (areTheSame) {
+            list[static_cast<std::size_t>(head.place)] = manifolds_[i];
+        }
+        points += head.pointCount;
     }
-    for (btPersistentManifold* manifold : listed_) {
-        if (manifold->m_index1a < 0) {
-            enlist(*manifold);
+    if (!areTheSame) {
+        std::ranges::sort(list, {}, &btPersistentManifold::m_index1a);
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            list[i]->m_index1a = static_cast<int>(i);
         }
     }
 }
@@ -337,6 +341,7 @@ void ContactImage::fill(btPersistentManifold& manifold, const Head& head,
     manifold.setContactProcessingThreshold(head.processingThreshold);
     manifold.m_companionIdA = head.companions[0];
     manifold.m_companionIdB = head.companions[1];
+    manifold.m_index1a = head.place;
     manifold.setNumContacts(head.pointCount);
     for (int k = 0; k < head.pointCount; ++k) {
         manifold.getContactPoint(k) = points[k];

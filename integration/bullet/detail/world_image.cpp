@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/detail/world_image.hpp>
 
+#include <broadphase/core/compiler.hpp>
 #include <broadphase/core/ensure_capacity.hpp>
 #include <integration/bullet/detail/bullet_classes.hpp>
 #include <integration/bullet/detail/bullet_members.hpp>
@@ -15,6 +16,9 @@
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
+
+// Fetched while others are copied.
+constexpr int kObjectsAhead = 2;
 
 btCollisionDispatcher& dispatcherOf(btDiscreteDynamicsWorld& world) {
     return static_cast<btCollisionDispatcher&>(*world.getDispatcher());
@@ -92,6 +96,9 @@ std::string WorldImage::save(btDiscreteDynamicsWorld& world,
     }
     btCollisionObjectArray& all = world.getCollisionObjectArray();
     for (int i = 0; i < all.size(); ++i) {
+        if (i + kObjectsAhead < all.size()) {
+            prefetchAll(static_cast<const btRigidBody&>(*all[i + kObjectsAhead]));
+        }
         btCollisionObject& object = *all[i];
         const btBroadphaseProxy* const proxy = object.getBroadphaseHandle();
         SavedObject saved{&object,
