@@ -3,6 +3,7 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
@@ -39,11 +40,22 @@ void GhostImage::detach(btPairCachingGhostObject& ghost) const {
     btBroadphasePairArray& pairs = cache.getOverlappingPairArray();
     while (pairs.size() > 0) {
         btBroadphasePair& pair = pairs[pairs.size() - 1];
-        detached_.push_back({&ghost,
-                             {pair.m_pProxy0->m_clientObject, pair.m_pProxy1->m_clientObject},
+        detached_.push_back({placeOf(ghost, *pair.m_pProxy0, *pair.m_pProxy1),
                              std::exchange(pair.m_algorithm, nullptr)});
         cache.removeOverlappingPair(pair.m_pProxy0, pair.m_pProxy1, nullptr);
     }
+}
+
+void GhostImage::endDetach() const {
+    std::ranges::sort(detached_, {}, &Detached::place);
+}
+
+std::array<std::uintptr_t, 3> GhostImage::placeOf(const btPairCachingGhostObject& ghost,
+                                                  const btBroadphaseProxy& a,
+                                                  const btBroadphaseProxy& b) noexcept {
+    return {reinterpret_cast<std::uintptr_t>(&ghost),
+            reinterpret_cast<std::uintptr_t>(a.m_clientObject),
+            reinterpret_cast<std::uintptr_t>(b.m_clientObject)};
 }
 
 void GhostImage::restore(btPairCachingGhostObject& ghost, int pairCount,
@@ -57,13 +69,11 @@ void GhostImage::restore(btPairCachingGhostObject& ghost, int pairCount,
         const Pair& saved = pairs_[at_++];
         btBroadphaseProxy* const first = BroadphaseImage::proxyAt(broadphase, saved.first);
         btBroadphaseProxy* const second = BroadphaseImage::proxyAt(broadphase, saved.second);
-        btCollisionAlgorithm* algorithm = nullptr;
-        for (Detached& detached : detached_) {
-            if (detached.ghost == &ghost && detached.clients[0] == first->m_clientObject &&
-                detached.clients[1] == second->m_clientObject) {
-                algorithm = std::exchange(detached.algorithm, nullptr);
-            }
-        }
+        const auto place = placeOf(ghost, *first, *second);
+        const auto found = std::ranges::lower_bound(detached_, place, {}, &Detached::place);
+        const bool isThere = found != detached_.end() && found->place == place;
+        btCollisionAlgorithm* const algorithm =
+            isThere ? std::exchange(found->algorithm, nullptr) : nullptr;
         btBroadphasePair& pair = *cache.addOverlappingPair(first, second);
         pair.m_internalInfo1 = saved.info;
         pair.m_algorithm = contacts.restore(algorithm, pair, dispatcher);
@@ -72,8 +82,9 @@ void GhostImage::restore(btPairCachingGhostObject& ghost, int pairCount,
 }
 
 void GhostImage::freeAlgorithmsOf(const void* client, btCollisionDispatcher& dispatcher) const {
+    const auto address = reinterpret_cast<std::uintptr_t>(client);
     for (Detached& detached : detached_) {
-        if (detached.clients[0] == client || detached.clients[1] == client) {
+        if (detached.place[1] == address || detached.place[2] == address) {
             freeQuietly(std::exchange(detached.algorithm, nullptr), &dispatcher);
         }
     }

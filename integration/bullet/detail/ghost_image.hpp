@@ -9,6 +9,7 @@
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,13 +23,15 @@ public:
     int save(btPairCachingGhostObject& ghost, ContactImage& contacts);
 
     /// Begins to restore. Of each ghost that is there, detach() is called as long as proxies are what they are
-    /// now, then restore() for each of the saved ones, in their order, once proxies are what they were.
+    /// now; then endDetach(), and restore() for each of the saved ones, in their order, once proxies are what they
+    /// were.
     void beginRestore() const {
         detached_.clear();
         at_ = 0;
     }
     void makeRoom(std::size_t pairCount) const;
     void detach(btPairCachingGhostObject& ghost) const;
+    void endDetach() const;
     void restore(btPairCachingGhostObject& ghost, int pairCount,
                  const SpatialHashBroadphase& broadphase, const ContactImage& contacts,
                  btCollisionDispatcher& dispatcher) const;
@@ -51,14 +54,16 @@ private:
     using Pair = BroadphaseImage::Pair;
     /// An algorithm, and where it was.
     struct Detached {
-        const btCollisionObject* ghost;
-        const void* clients[2];
+        std::array<std::uintptr_t, 3> place;  // the ghost, and the two clients
         btCollisionAlgorithm* algorithm;
     };
+    [[nodiscard]] static std::array<std::uintptr_t, 3> placeOf(
+        const btPairCachingGhostObject& ghost, const btBroadphaseProxy& a,
+        const btBroadphaseProxy& b) noexcept;
 
     std::vector<Pair> pairs_;
-    mutable std::vector<Detached> detached_;
-    mutable std::size_t at_ = 0;  // in pairs_
+    mutable std::vector<Detached> detached_;  // by place, once all are
+    mutable std::size_t at_ = 0;              // in pairs_
 };
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

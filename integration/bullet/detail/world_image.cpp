@@ -184,6 +184,7 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
             ghosts.detach(*caching);
         }
     }
+    ghosts.endDetach();
     broadphase.restore(ofBroadphase, &dispatcher);
     all.resizeNoInitialize(0);
     for (const SavedObject& saved : objects) {
