@@ -4,7 +4,7 @@
 
 #include <broadphase/grid_snapshot.hpp>
 
-#include <tests/broadphase/grid_world.hpp>
+#include <tests/broadphase/played_grid.hpp>
 #include <tests/support/forged_bytes.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/random.hpp>
@@ -34,14 +34,14 @@ template <class Scalar>
 // Costs, and the order in which queries find proxies, are not sent.
 template <class Scalar>
 void expectTheSameWhereItIsSent(const Play& play) {
-    GridWorld<Scalar> world(play, 7);
-    GridWorld<Scalar> elsewhere(play, 8);
+    PlayedGrid<Scalar> world(play, 7);
+    PlayedGrid<Scalar> elsewhere(play, 8);
     Log log;
     world.notesCosts = elsewhere.notesCosts = false;
     world.play(1, 30, log);
     for (std::uint64_t round = 0; round < 24; ++round) {
         SCOPED_TRACE(round);
-        typename GridWorld<Scalar>::Saved saved;
+        typename PlayedGrid<Scalar>::Saved saved;
         world.save(saved);
         saved.snapshot = sent(saved.snapshot);
         elsewhere.restore(saved);
@@ -93,11 +93,11 @@ TEST(GridSnapshot, IsSoundOrRefusedWhateverItsBytesAre) {
     Random random(11);
     int read = 0;
     for (const Play& play : plays()) {
-        GridWorld<float> world(play, 3);
+        PlayedGrid<float> world(play, 3);
         Log log;
         world.notesCosts = false;
         world.play(1, 20, log);
-        GridWorld<float>::Saved saved;
+        PlayedGrid<float>::Saved saved;
         world.save(saved);
         std::vector<std::byte> bytes;
         saved.snapshot.write(bytes);
@@ -106,9 +106,9 @@ TEST(GridSnapshot, IsSoundOrRefusedWhateverItsBytesAre) {
             std::vector<std::byte> forged = bytes;
             forgeBytes(forged, random);
             if (snapshot.read(forged).empty()) {
-                GridWorld<float> other({play.name, 0, play.moving, play.step, play.extent,
-                                        play.refused, 0, 0, play.hasPairs, true, play.config},
-                                       1);
+                PlayedGrid<float> other({play.name, 0, play.moving, play.step, play.extent,
+                                         play.refused, 0, 0, play.hasPairs, true, play.config},
+                                        1);
                 const bool fits = play.hasPairs ? snapshot.faultFor(*other.pairs).empty()
                                                 : snapshot.faultFor(other.grid).empty();
                 if (!fits) {

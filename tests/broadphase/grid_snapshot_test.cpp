@@ -5,7 +5,7 @@
 
 #include <broadphase/grid_snapshot.hpp>
 
-#include <tests/broadphase/grid_world.hpp>
+#include <tests/broadphase/played_grid.hpp>
 #include <tests/support/count_allocations.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/out_of_memory.hpp>
@@ -23,10 +23,10 @@ namespace {
 
 template <class Scalar>
 void expectTheSameAgain(const Play& play) {
-    GridWorld<Scalar> world(play, 7);
+    PlayedGrid<Scalar> world(play, 7);
     Log log;
     world.play(1, 30, log);
-    typename GridWorld<Scalar>::Saved snapshot;
+    typename PlayedGrid<Scalar>::Saved snapshot;
     for (std::uint64_t round = 0; round < 12; ++round) {
         SCOPED_TRACE(round);
         Log first;
@@ -57,9 +57,9 @@ INSTANTIATE_TEST_SUITE_P(All, GridSnapshotPlays, testing::ValuesIn(plays()),
 
 TEST(GridSnapshot, GoesBackEightFramesInEachFrameAsIfItHadNeverGoneBack) {
     const Play play{"Netcode", 300, 0.3, 0.3, 12, 0.2, 0.05};
-    GridWorld<float> straight(play, 5);
-    GridWorld<float> rolled(play, 5);
-    std::vector<GridWorld<float>::Saved> ring(8);
+    PlayedGrid<float> straight(play, 5);
+    PlayedGrid<float> rolled(play, 5);
+    std::vector<PlayedGrid<float>::Saved> ring(8);
     Log log;
     constexpr std::uint64_t kFrames = 200;
     for (std::uint64_t frame = 0; frame < kFrames; ++frame) {
@@ -126,8 +126,8 @@ TEST(GridSnapshot, SaveLeavesAnEmptySnapshotWhereMemoryRunsOut) {
 }
 
 TEST(GridSnapshot, AllocatesNothingInASteadyFrame) {
-    GridWorld<float> world({"Steady", 300, 0.5, 0.01}, 3);
-    GridWorld<float>::Saved saved;
+    PlayedGrid<float> world({"Steady", 300, 0.5, 0.01}, 3);
+    PlayedGrid<float>::Saved saved;
     Log log;
     for (int frame = 0; frame < 40; ++frame) {
         world.update(log);
@@ -144,12 +144,12 @@ TEST(GridSnapshot, AllocatesNothingInASteadyFrame) {
 
 TEST(GridSnapshot, PutsWhatWasSavedIntoAnotherGrid) {
     const Play play{"Any", 200, 0.5, 0.5, 12, 0.3, 0.1, 0.1};
-    GridWorld<double> one(play, 3);
-    GridWorld<double> other(play, 4);
+    PlayedGrid<double> one(play, 3);
+    PlayedGrid<double> other(play, 4);
     Log log;
     one.play(1, 20, log);
     other.play(2, 5, log);
-    GridWorld<double>::Saved saved;
+    PlayedGrid<double>::Saved saved;
     one.save(saved);
     other.restore(saved);
     Log ofOne;

@@ -58,9 +58,9 @@ struct Play {
 };
 
 template <class Scalar>
-class GridWorld {
+class PlayedGrid {
 public:
-    GridWorld(const Play& play, std::uint64_t seed)
+    PlayedGrid(const Play& play, std::uint64_t seed)
         : play_(play), random_(seed), grid(play.config), sweeps(grid) {
         if (play.hasPairs) {
             pairs = std::make_unique<Pairs<Scalar>>(grid, &sweeps);
@@ -248,9 +248,9 @@ struct BetweenTwoStates {
         world.play(9, 3, log);
         return log;
     }
-    GridWorld<float> world;
-    GridWorld<float>::Saved before;
-    GridWorld<float>::Saved after;
+    PlayedGrid<float> world;
+    PlayedGrid<float>::Saved before;
+    PlayedGrid<float>::Saved after;
 };
 
 }  // namespace hashphase::test
