@@ -118,8 +118,11 @@ public:
             scale_ = Scalar(0.125);
         }
         // key() takes the fatness from numbers that were rounded before.
-        fatness_.min() -= Limits::epsilon() * fatness_.min().cwiseAbs();
-        fatness_.max() += Limits::epsilon() * fatness_.max().cwiseAbs();
+        const auto rounding = [](const Vector3<Scalar>& corner) {
+            return (Limits::epsilon() * corner.cwiseAbs().cwiseMin(Limits::max())).eval();
+        };
+        fatness_.min() -= rounding(fatness_.min());
+        fatness_.max() += rounding(fatness_.max());
         last_ = fatness.min().isZero(0) && fatness.max().isZero(0) ? Scalar(1) : kWidened;
         inverse_ = (scale_ * direction_).cwiseInverse();
         for (int axis = 0; axis < 3; ++axis) {
@@ -142,14 +145,17 @@ public:
         Scalar exit = last_;
         for (int axis = 0; axis < 3; ++axis) {
             // Relative to the ray first: far from the origin, the small numbers stay exact.
-            const Scalar low = (box.min()[axis] - from_[axis]) - fatness_.max()[axis];
-            const Scalar high = (box.max()[axis] - from_[axis]) - fatness_.min()[axis];
+            const Scalar relativeMin = box.min()[axis] - from_[axis];
+            const Scalar relativeMax = box.max()[axis] - from_[axis];
             if (direction_[axis] == 0) {
-                if (!(low <= 0 && high >= 0)) {
+                // Not by differences: both may be infinite.
+                if (!(relativeMin <= fatness_.max()[axis] && relativeMax >= fatness_.min()[axis])) {
                     return -1;
                 }
                 continue;
             }
+            const Scalar low = relativeMin - fatness_.max()[axis];
+            const Scalar high = relativeMax - fatness_.min()[axis];
             Scalar slabEnter = low * scale_ * inverse_[axis];
             Scalar slabExit = high * scale_ * inverse_[axis];
             if (direction_[axis] < 0) {

@@ -53,17 +53,15 @@ public:
     void aim() noexcept {
         for (std::size_t axis = 0; axis < 3 && !isAimed_; ++axis) {
             const double inverse = std::clamp(1 / way_[axis], -1 / kTiny, 1 / kTiny);
-            const double most = Limits::max();
-            part_.lowFrom[axis] =
-                static_cast<Scalar>(isExpressible_ ? from_[axis] + high_[axis] : most);
-            part_.highFrom[axis] =
-                static_cast<Scalar>(isExpressible_ ? from_[axis] + low_[axis] : -most);
-            part_.inverse[axis] = static_cast<Scalar>(isExpressible_ ? inverse : 1.0);
+            part_.lowFrom[axis] = static_cast<Scalar>(from_[axis] + high_[axis]);
+            part_.highFrom[axis] = static_cast<Scalar>(from_[axis] + low_[axis]);
+            part_.inverse[axis] = static_cast<Scalar>(inverse);
         }
         isAimed_ = true;
     }
 
-    /// False when a number is too large to be counted with, or NaN: then it may meet every box.
+    /// False when a number is too large to be counted with, or NaN: then it may meet every box, and nothing else
+    /// means anything.
     [[nodiscard]] bool isExpressible() const noexcept { return isExpressible_; }
     [[nodiscard]] double way(std::size_t axis) const noexcept { return way_[axis]; }
     /// What the region meets at `key` or sooner, the ray meets at this or sooner.
@@ -85,11 +83,6 @@ public:
 
     /// Sets the part's bounds to those of a stretch.
     void bound(Stretch stretch) noexcept {
-        if (!isExpressible_) {
-            std::fill_n(part_.bounds, 3, -Limits::infinity());
-            std::fill_n(part_.bounds + 3, 3, Limits::infinity());
-            return;
-        }
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double one = from_[axis] + stretch.first * way_[axis];
             const double other = from_[axis] + stretch.last * way_[axis];
@@ -126,9 +119,12 @@ public:
 
     /// Returns false when it is to end.
     [[nodiscard]] bool walk(const Level<Scalar>& level) {
+        if (!ray_.isExpressible()) {
+            return offerAll(level);
+        }
         const Stretch all{0, ray_.lastFor(limit_)};
         ray_.bound(all);
-        if (!ray_.isExpressible() || !level.hasCells()) {
+        if (!level.hasCells()) {
             return read(level, true, RayPart<Scalar>::kNoSieve);
         }
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -320,6 +316,19 @@ private:
         sink.end += found_.size();
         return kernels<Scalar>().queryRay(level, ray_.part(), readsAll, sink, cost) &&
                handOver(sink);
+    }
+
+    // Where numbers are too large for the kernel.
+    [[nodiscard]] bool offerAll(const Level<Scalar>& level) {
+        PairSink sink{found_.data(), found_.data(), &grow, this};
+        cost.boxesTested += level.count();
+        for (std::uint32_t entry = level.firstEntry; entry < level.lastEntry; ++entry) {
+            if (sink.next == found_.data() + found_.size() && !handOver(sink)) {
+                return false;
+            }
+            *sink.next++ = {0, entry};
+        }
+        return handOver(sink);
     }
 
     static bool grow(PairSink& sink, std::size_t /*count*/) {
