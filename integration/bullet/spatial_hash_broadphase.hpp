@@ -189,10 +189,10 @@ public:
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 
-    /// rayTest() and closestRay() for many rays: each callback gets the reports of its own ray, in the order
-    /// of a single call. Each ray has a callback of its own (a missing one is asserted). Where `parallelFor`
-    /// is parallel, callbacks run at the same time and must change nothing. Cost: that of the single rays,
-    /// or less.
+    /// rayTest() and closestRay() for many rays: each callback gets what single calls report of its own ray, but
+    /// hits that are about as near may come in another order. Each ray has a callback of its own (a missing one is
+    /// asserted). Where `parallelFor` is parallel, callbacks run at the same time and must change nothing. Cost:
+    /// that of the single rays, or less.
     void rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor = serialFor);
     void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 

@@ -343,19 +343,22 @@ private:
         if (!castsRays()) {
             return;
         }
+        const std::vector<int> expectedOfEach = expected(ray);
+        const auto expectAll = [&](AskedRay& callback) {  // about from near to far
+            std::sort(callback.asked.begin(), callback.asked.end());
+            EXPECT_EQ(callback.asked, expectedOfEach);
+        };
         AskedRay one;
         world_.hash()->closestRay(ray.from, ray.to, one);
-        std::vector<int> asked = one.asked;
-        std::sort(asked.begin(), asked.end());
-        EXPECT_EQ(asked, expected(ray));
+        expectAll(one);
         std::array<AskedRay, 3> callbacks;
         std::vector<ClosestRay> rays;
         for (AskedRay& callback : callbacks) {
             rays.push_back({ray.from, ray.to, &callback});
         }
         world_.hash()->closestRays(rays);
-        for (const AskedRay& callback : callbacks) {
-            EXPECT_EQ(callback.asked, one.asked);
+        for (AskedRay& callback : callbacks) {
+            expectAll(callback);
         }
     }
 
