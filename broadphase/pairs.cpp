@@ -158,6 +158,11 @@ bool Pairs<Scalar>::isIgnored(const ProxyPair& pair) const noexcept {
 }
 
 template <class Scalar>
+bool Pairs<Scalar>::mayIgnore() const noexcept {
+    return state_.known.ignored != nullptr && state_.known.ignored->size() > 0;
+}
+
+template <class Scalar>
 void Pairs<Scalar>::collectIgnored(std::vector<ProxyPair>& pairs) const {
     detail::collectIgnored(state_, pairs);
 }

@@ -123,6 +123,9 @@ public:
     /// Whether the two, in any order, are alive and ignored. Cost: O(1).
     [[nodiscard]] bool isIgnored(const ProxyPair& pair) const noexcept;
 
+    /// Whether any two may be. Cost: O(1).
+    [[nodiscard]] bool mayIgnore() const noexcept;
+
     /// Appends all pairs that are ignored, sorted, to `pairs`. Cost: that of sorting them.
     void collectIgnored(std::vector<ProxyPair>& pairs) const;
 

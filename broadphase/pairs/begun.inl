@@ -61,9 +61,9 @@ template <class Scalar>
 void joinMobile(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     const Table<Scalar>& table = pairs.tables.mobile;
     PairList& found = pairs.watched.amongMobile;
-    joinAllowed(pairs, table, pairs.frame.mobileKinds, found, parallelFor);
+    joinAllowed(pairs, table, pairs.store.frame.mobileKinds, found, parallelFor);
     listKeys(selectApart<Scalar>(pairs.scratch, found.pairs(), table.order().data(),
-                                 pairs.frame.before.data(), parallelFor),
+                                 pairs.store.frame.before.data(), parallelFor),
              table.proxyIndices().data(), pairs.call.asked, parallelFor);
 }
 
@@ -76,14 +76,15 @@ void selectAgainstResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     const Table<Scalar>& resting = pairs.tables.resting;
     SearchScratch<Scalar>& scratch = pairs.scratch;
     const bool isAstir = isRestAstir(pairs);
-    const GroupKinds::Set kinds = isAstir ? pairs.frame.mobileKinds : pairs.frame.changedKinds;
+    const GroupKinds::Set kinds =
+        isAstir ? pairs.store.frame.mobileKinds : pairs.store.frame.changedKinds;
     const auto isSearched = [&](std::uint32_t proxyIndex) {
         return isAstir || proxies.changedNow(proxyIndex);
     };
     constexpr std::size_t kFew = 4;
     if (kFew * resting.size() < mobile.size()) {
         queryAllowed(pairs, resting.columns(), resting.proxyIndices(), pairs.tables.restingKinds,
-                     mobile, pairs.frame.mobileKinds, scratch.selected, parallelFor);
+                     mobile, pairs.store.frame.mobileKinds, scratch.selected, parallelFor);
         takeOut(scratch.selected,
                 [&](const IndexPair& pair) { return !isSearched(mobile.proxyIndex(pair.b)); });
         for (IndexPair& pair : scratch.selected.all()) {
@@ -115,7 +116,7 @@ void findAgainstResting(PairState<Scalar>& pairs, ParallelFor parallelFor) {
         const std::uint32_t proxyIndex = resting.proxyIndex(restingEntry);
         watched.toResting.push({entry, proxyIndex});
         // Not by their indices: these boxes are at hand.
-        const PaddedBox<Scalar>& before = pairs.frame.before[mobile.order()[entry]];
+        const PaddedBox<Scalar>& before = pairs.store.frame.before[mobile.order()[entry]];
         const Aabb<Scalar> other = isShifted || pairs.proxies.changedNow(proxyIndex)
                                        ? pairs.store.boxAtUpdate(proxyIndex)
                                        : resting.box(restingEntry);

@@ -78,7 +78,7 @@ void findEndedOfWoken(PairState<Scalar>& pairs, ParallelFor parallelFor) {
 template <class Scalar>
 void findEndedOfWatched(PairState<Scalar>& pairs, ParallelFor parallelFor) {
     const Population<Scalar>& proxies = pairs.proxies;
-    const std::vector<PaddedBox<Scalar>>& now = pairs.frame.now;
+    const std::vector<PaddedBox<Scalar>>& now = pairs.store.frame.now;
     const auto amongMobile = pairs.watched.amongMobile.pairs();
     const auto toResting = pairs.watched.toResting.pairs();
     pairs.cost.pairsWatched = amongMobile.size() + toResting.size();

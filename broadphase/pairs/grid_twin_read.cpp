@@ -232,7 +232,7 @@ private:
             return false;
         }
         const auto fewImmediate = from_.read<std::uint64_t>();
-        pairs.fewImmediate = static_cast<std::size_t>(std::min(fewImmediate, kMostImmediate));
+        pairs.fewImmediate = static_cast<std::uint32_t>(std::min(fewImmediate, kMostImmediate));
         countPairs();
         return true;
     }

@@ -9,7 +9,10 @@
 #include <broadphase/pairs/update.inl>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
+#include <limits>
 
 namespace hashphase::detail {
 
@@ -47,7 +50,9 @@ void endImmediateOfRemoved(PairState<Scalar>& pairs) noexcept {
     for (const PairKey key : pairs.call.ended) {
         pairs.endPair(key);
     }
-    pairs.fewImmediate = PairState<Scalar>::kFewImmediate + 2 * immediate.size();
+    pairs.fewImmediate = static_cast<std::uint32_t>(
+        std::min<std::size_t>(PairState<Scalar>::kFewImmediate + 2 * immediate.size(),
+                              std::numeric_limits<std::uint32_t>::max()));
     pairs.proxies.giveBack(pairs.proxies.removedImmediate);
 }
 

@@ -111,7 +111,6 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT PairState {
     Store<Scalar>& store;
     Population<Scalar>& proxies = store.proxies;
     Tables<Scalar>& tables = store.tables;
-    Frame<Scalar>& frame = store.frame;
     Sweeping<Scalar>* sweeping;  // null for none
 
     WatchedPairs watched;
@@ -122,11 +121,11 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT PairState {
     PairChangeLists immediateChanges;
     PairCost cost;
     PeakWatch peaks;
-    SearchScratch<Scalar> scratch;
     // Until more candidates are immediate, those of removed proxies stay.
-    std::size_t fewImmediate = kFewImmediate;
+    std::uint32_t fewImmediate = kFewImmediate;
+    SearchScratch<Scalar> scratch;
 
-    static constexpr std::size_t kFewImmediate = 64;
+    static constexpr std::uint32_t kFewImmediate = 64;
     /// Candidates that are asked about at once, some twice.
     static constexpr std::size_t kPart = 8192;
 

@@ -39,7 +39,8 @@ void recoverPairs(PairState<Scalar>& pairs) {
     store.stage(serialFor, Store<Scalar>::StageFor::repair);
     Table<Scalar>& table = pairs.lastUpdate.scratchTable();
     const ProxyGroups* const groups = pairs.proxies.groupsOfAllAtUpdate();
-    table.build(pairs.proxies.mobile, pairs.frame.before, store.fixedSizes(), serialFor, groups);
+    table.build(pairs.proxies.mobile, pairs.store.frame.before, store.fixedSizes(), serialFor,
+                groups);
     pairs.watched.amongMobile.clear();
     if (!known.arePairs()) {
         KernelCost cost;

@@ -56,6 +56,38 @@ PairCache::~PairCache() {
     }
 }
 
+// --- Who may pair --------------------------------------------------------------------------------
+
+namespace {
+
+/// What a cache does without a callback.
+struct GroupsAndMasks final : btOverlapFilterCallback {
+    bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
+        return (a->m_collisionFilterGroup & b->m_collisionFilterMask) != 0 &&
+               (b->m_collisionFilterGroup & a->m_collisionFilterMask) != 0;
+    }
+};
+
+GroupsAndMasks groupsAndMasks;
+
+}  // namespace
+
+bool PairCache::needsBroadphaseCollision(btBroadphaseProxy* proxy0,
+                                         btBroadphaseProxy* proxy1) const {
+    const bool isRefused =
+        watcher_ != nullptr && watcher_->mayRefuse() && watcher_->refuses(*proxy0, *proxy1);
+    return !isRefused && doFiltersAccept(proxy0, proxy1);
+}
+
+btOverlapFilterCallback* PairCache::getOverlapFilterCallback() {
+    const bool mayRefuse = watcher_ != nullptr && watcher_->mayRefuse();
+    return filter_ == nullptr && mayRefuse ? &groupsAndMasks : filter_;
+}
+
+void PairCache::setOverlapFilterCallback(btOverlapFilterCallback* callback) {
+    filter_ = callback == &groupsAndMasks ? nullptr : callback;
+}
+
 // --- One pair ------------------------------------------------------------------------------------
 
 btBroadphasePair* PairCache::addOverlappingPair(btBroadphaseProxy* proxy0,

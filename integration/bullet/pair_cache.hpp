@@ -51,7 +51,7 @@
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 class BroadphaseImage;
 struct CacheWatcher;
-}
+}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -226,9 +226,12 @@ public:
 
     // --- Callbacks -------------------------------------------------------------------------------
 
-    /// Asks the filter callback; without one, groups and masks decide, both ways.
+    /// Asks the filter callback; without one, groups and masks decide, both ways. False of two that the
+    /// broadphase ignores, or that are in different worlds of a WorldsBroadphase.
     [[nodiscard]] bool needsBroadphaseCollision(btBroadphaseProxy* proxy0,
-                                                btBroadphaseProxy* proxy1) const override {
+                                                btBroadphaseProxy* proxy1) const override;
+    /// The same, whatever the broadphase says of the two.
+    [[nodiscard]] bool doFiltersAccept(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) const {
         if (filter_ != nullptr) {
             const detail::QueryScope scope(this);
             return filter_->needBroadphaseCollision(proxy0, proxy1);
@@ -236,10 +239,13 @@ public:
         return (proxy0->m_collisionFilterGroup & proxy1->m_collisionFilterMask) != 0 &&
                (proxy1->m_collisionFilterGroup & proxy0->m_collisionFilterMask) != 0;
     }
-    btOverlapFilterCallback* getOverlapFilterCallback() override { return filter_; }
-    void setOverlapFilterCallback(btOverlapFilterCallback* callback) override {
-        filter_ = callback;
-    }
+    /// The callback that was set. Where the broadphase may say that two are no pair, and none was set, one that
+    /// asks groups and masks: Bullet's casts of fast bodies call needsBroadphaseCollision() only if there is one.
+    btOverlapFilterCallback* getOverlapFilterCallback() override;
+    /// NULL for none.
+    void setOverlapFilterCallback(btOverlapFilterCallback* callback) override;
+    /// Whether one was set.
+    [[nodiscard]] bool hasFilterCallback() const noexcept { return filter_ != nullptr; }
 
     /// Sets the callback that is told of each pair added and each pair removed, once; NULL for none. As in
     /// Bullet's caches, it is not told of the present pairs.

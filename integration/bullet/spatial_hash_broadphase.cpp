@@ -238,14 +238,13 @@ void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
             Proxy* const first = proxyAt(asked[i].first.index);
             Proxy* const second = proxyAt(asked[i].second.index);
             const bool isPair = watch_.cache != nullptr
-                                    ? watch_.cache->needsBroadphaseCollision(first, second)
+                                    ? watch_.cache->doFiltersAccept(first, second)
                                     : pairCache_->needsBroadphaseCollision(first, second);
             accepted[i] = isPair ? 1 : 0;
         }
     };
     // A callback of the program, or a cache of its own, is asked on the caller's thread.
-    const bool doGroupsAnswer =
-        watch_.cache != nullptr && watch_.cache->getOverlapFilterCallback() == nullptr;
+    const bool doGroupsAnswer = watch_.cache != nullptr && !watch_.cache->hasFilterCallback();
     forPairs(doGroupsAnswer, asked.size(), ask);
 }
 

@@ -228,6 +228,8 @@ public:
     /// Where the two overlap, and the filter accepts it, they are a pair at once. Cost: as ignorePair().
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     [[nodiscard]] bool isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const;
+    /// Whether any two may be ignored.
+    [[nodiscard]] bool mayIgnorePairs() const noexcept { return pairs_.mayIgnore(); }
 
     /// Makes the ignored pairs of this proxy those that Bullet's dispatcher refuses: with the objects that its
     /// btCollisionObject lists by setIgnoreCollisionCheck(), and that are in the world. Others that it had are
@@ -433,7 +435,7 @@ private:
     bool isApplying_ = false;              // changes to the cache
     bool mayGrow_ = sweeps_ != nullptr;    // the boxes of some, which sweep or have a margin
     std::unique_ptr<PairCache> ownCache_;  // if none was given
-    detail::CacheWatch watch_;             // of the cache, if it is known to be a PairCache
+    detail::CacheWatch watch_{*this};      // of the cache, if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
     detail::GroupKinds groupKinds_;
     detail::GroupKinds::Set changedKinds_ = 0;  // of what has changed since the last update

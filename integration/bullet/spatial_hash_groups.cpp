@@ -14,7 +14,7 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 // that group and mask refuse.
 bool SpatialHashBroadphase::doGroupsDecide() const {
     return config_.filterRefusesMore ||
-           (watch_.cache != nullptr && watch_.cache->getOverlapFilterCallback() == nullptr);
+           (watch_.cache != nullptr && !watch_.cache->hasFilterCallback());
 }
 
 // A callback may come and go at any time. It may answer otherwise than group and mask.

@@ -192,6 +192,9 @@ private:
     void note(const btBroadphasePair& pair) noexcept override;
     void forget() noexcept override;
     void endCache() noexcept override;
+    [[nodiscard]] bool mayRefuse() const noexcept override;
+    [[nodiscard]] bool refuses(const btBroadphaseProxy& a,
+                               const btBroadphaseProxy& b) const noexcept override;
 
     class Applying;
 

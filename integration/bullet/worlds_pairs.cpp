@@ -47,7 +47,7 @@ void WorldsBroadphase::updateWorlds() {
             updated_[i].changes = updated_[i].world->updatePairs();
         }
     };
-    if (config_.each.parallelFor && pairCache_->getOverlapFilterCallback() == nullptr) {
+    if (config_.each.parallelFor && !pairCache_->hasFilterCallback()) {
         config_.each.parallelFor(updated_.size(), kGrain, update);
     } else {
         serialFor(updated_.size(), kGrain, update);
@@ -134,6 +134,16 @@ void WorldsBroadphase::endCache() noexcept {
         world->watch_.endCache();
     }
     pairCache_ = nullptr;
+}
+
+bool WorldsBroadphase::mayRefuse() const noexcept {
+    return true;
+}
+
+bool WorldsBroadphase::refuses(const btBroadphaseProxy& a,
+                               const btBroadphaseProxy& b) const noexcept {
+    const World& world = worldFor(&a);
+    return &world != &worldFor(&b) || world.isIgnoredPair(&a, &b);
 }
 
 // --- What they hold ------------------------------------------------------------------------------

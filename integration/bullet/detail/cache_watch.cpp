@@ -2,6 +2,7 @@
 #include <integration/bullet/detail/cache_watch.hpp>
 
 #include <broadphase/core/caught.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 
@@ -52,6 +53,14 @@ void CacheWatch::forget() noexcept {
 void CacheWatch::endCache() noexcept {
     forget();
     cache = nullptr;
+}
+
+bool CacheWatch::mayRefuse() const noexcept {
+    return owner.mayIgnorePairs();
+}
+
+bool CacheWatch::refuses(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const noexcept {
+    return owner.isIgnoredPair(&a, &b);
 }
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -8,7 +8,12 @@
 #include <memory>
 #include <vector>
 
-namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
+namespace hashphase {
+inline namespace HASHPHASE_BULLET_NAMESPACE {
+class SpatialHashBroadphase;
+}
+
+namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Who is told by a pair cache of pairs that others take out of it, and of its end.
 struct CacheWatcher {
@@ -19,6 +24,12 @@ struct CacheWatcher {
 
     virtual void endCache() noexcept = 0;
 
+    /// Whether it may know of two that are no pair whatever their groups and the filter say, and whether these
+    /// are such two.
+    [[nodiscard]] virtual bool mayRefuse() const noexcept = 0;
+    [[nodiscard]] virtual bool refuses(const btBroadphaseProxy& a,
+                                       const btBroadphaseProxy& b) const noexcept = 0;
+
 protected:
     ~CacheWatcher() = default;
 };
@@ -26,7 +37,7 @@ protected:
 /// What a broadphase knows of its pair cache: whether it is still there, and which pairs others have taken
 /// out of it. The cache writes here; either may end first.
 struct CacheWatch final : CacheWatcher {
-    CacheWatch() = default;
+    explicit CacheWatch(const SpatialHashBroadphase& itsOwner) noexcept : owner(itsOwner) {}
     ~CacheWatch();
     CacheWatch(const CacheWatch&) = delete;
     CacheWatch& operator=(const CacheWatch&) = delete;
@@ -37,6 +48,9 @@ struct CacheWatch final : CacheWatcher {
     void note(const btBroadphasePair& pair) noexcept override;
     void forget() noexcept override;
     void endCache() noexcept override;
+    [[nodiscard]] bool mayRefuse() const noexcept override;
+    [[nodiscard]] bool refuses(const btBroadphaseProxy& a,
+                               const btBroadphaseProxy& b) const noexcept override;
 
     /// Where nobody asks, those of which a proxy is gone do not gather, nor those that are back.
     void prune() noexcept {
@@ -56,9 +70,11 @@ struct CacheWatch final : CacheWatcher {
 
     void pruneTakenOut() noexcept;
 
+    const SpatialHashBroadphase& owner;
     PairCache* cache = nullptr;  // null when there is none, or it has ended
     std::unique_ptr<std::vector<BulletProxyPair>> takenOut;  // null for none
     bool isMoreTakenOut = false;  // than is noted, as there was no memory
 };
 
-}  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE
+}  // namespace detail::inline HASHPHASE_BULLET_NAMESPACE
+}  // namespace hashphase

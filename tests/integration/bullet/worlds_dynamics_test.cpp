@@ -77,6 +77,64 @@ bool moveAlike(const btRigidBody& a, const btRigidBody& b) {
            a.getActivationState() == b.getActivationState();
 }
 
+/// A wall, body 0, towards which a ball flies, body 1, by more than the wall's thickness in a step.
+int throwFastBall(DynamicsWorld& world) {
+    world.world().setGravity({0, 0, 0});
+    world.addBox({btScalar(0.1), 4, 4}, 0, {0, 0, 0});
+    auto* const ball = world.keep(std::make_unique<btSphereShape>(btScalar(0.2)));
+    const int thrown = world.add(ball, 1, placeAt({-5, 0, 0}));
+    world.body(thrown).setLinearVelocity({120, 0, 0});
+    world.body(thrown).setCcdMotionThreshold(btScalar(0.1));
+    world.body(thrown).setCcdSweptSphereRadius(btScalar(0.15));
+    return thrown;
+}
+
+bool passesTheWall(DynamicsWorld& world, int thrown) {
+    world.step(6);
+    return world.body(thrown).getWorldTransform().getOrigin().x() > 3;
+}
+
+// Bullet casts them through the whole broadphase, not by its pairs.
+TEST(WorldsDynamics, FastBodiesMeetNobodyOfAnotherWorld) {
+    for (const int worldOfBall : {0, 1}) {
+        auto cache = std::make_unique<PairCache>();
+        WorldsConfig config;
+        config.worldCount = 2;
+        config.worldOf = [=](const btCollisionObject& object) {
+            return object.getUserIndex() == 0 ? 0 : worldOfBall;
+        };
+        auto broadphase = std::make_unique<WorldsBroadphase>(cache.get(), config);
+        DynamicsWorld world(std::move(broadphase), std::move(cache));
+        const int thrown = throwFastBall(world);
+        EXPECT_EQ(passesTheWall(world, thrown), worldOfBall == 1);
+    }
+}
+
+TEST(WorldsDynamics, FastBodiesPassWhatTheyIgnore) {
+    for (const bool ignoresIt : {false, true}) {
+        auto cache = std::make_unique<PairCache>();
+        auto broadphase = std::make_unique<SpatialHashBroadphase>(cache.get());
+        SpatialHashBroadphase& hash = *broadphase;
+        PairCache& pairCache = *cache;
+        DynamicsWorld world(std::move(broadphase), std::move(cache));
+        const int thrown = throwFastBall(world);
+        btBroadphaseProxy* const wall = world.body(0).getBroadphaseHandle();
+        btBroadphaseProxy* const ball = world.body(thrown).getBroadphaseHandle();
+        EXPECT_EQ(pairCache.getOverlapFilterCallback(), nullptr);
+        if (ignoresIt) {
+            hash.ignorePair(wall, ball, nullptr);
+            // What is set back is as if it had not been set.
+            pairCache.setOverlapFilterCallback(pairCache.getOverlapFilterCallback());
+            EXPECT_FALSE(pairCache.hasFilterCallback());
+            EXPECT_EQ(pairCache.addOverlappingPair(wall, ball), nullptr);
+        }
+        EXPECT_EQ(pairCache.needsBroadphaseCollision(wall, ball), !ignoresIt);
+        EXPECT_EQ(passesTheWall(world, thrown), ignoresIt);
+        hash.stopIgnoringPair(wall, ball, nullptr);
+        EXPECT_EQ(pairCache.getOverlapFilterCallback(), nullptr);
+    }
+}
+
 TEST(WorldsDynamics, MoveBodiesAsInWorldsOfTheirOwnToTheLastBit) {
     constexpr int kCount = 9;
     ThreadedFor threadedFor(2, 3);
