@@ -60,22 +60,23 @@ public:
     /// The same of pairs, their grid and the sweeps that they follow.
     void restore(Pairs<Scalar>& pairs) const;
 
-    /// Says why the snapshot cannot be restored into the grid, or the pairs, in a sentence; empty where it can. To be
-    /// asked about a snapshot that was read, which may be of another grid.
+    /// Says why the snapshot cannot be restored into the grid, or the pairs, in a sentence; empty where it can. To
+    /// be asked about a snapshot that was read, which may be of another grid.
     [[nodiscard]] std::string faultFor(const Grid<Scalar>& grid) const;
     [[nodiscard]] std::string faultFor(const Pairs<Scalar>& pairs) const;
 
-    /// Makes room for restore(), which then takes no memory until the pairs, or their grid, have given some back. Where
-    /// memory runs out, nothing has changed. Misuse as of restore().
+    /// Makes room for restore(), which then takes no memory until the pairs, or their grid, have given some back.
+    /// Where memory runs out, nothing has changed. Misuse as of restore().
     void makeRoom(Pairs<Scalar>& pairs) const;
 
-    /// Replaces what `bytes` held by the snapshot, which is not empty (asserted): to send or to keep. They begin with a
-    /// version and a checksum, and are the same for equal states. Numbers are as this processor has them.
+    /// Replaces what `bytes` held by the snapshot, which is not empty (asserted): to send or to keep. They begin
+    /// with a version and a checksum, and are the same for equal states. Numbers are as this processor has them.
     /// Cost: O(what is saved).
     void write(std::vector<std::byte>& bytes) const;
 
-    /// Takes what was written. Returns what is wrong with the bytes, in a sentence, and changes nothing then; else
-    /// nothing. Whatever the bytes, the snapshot that is read is one that a grid can have been in, or is refused.
+    /// Takes what was written. Returns an empty string on success. Otherwise a sentence that says what is wrong with
+    /// the bytes, and changes nothing. Whatever the bytes, the snapshot that is read is one that a grid can have been
+    /// in, or is refused.
     /// What is the same after restore() are boxes, ids, groups, pairs, sweeps and all that follows from these: not
     /// which proxies rest, and so neither costs nor the order in which queries find proxies.
     /// Cost: O(what is saved), and finding all pairs from scratch.

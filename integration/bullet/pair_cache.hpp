@@ -62,9 +62,10 @@ enum class PairOrder {
     /// back to an earlier frame bring back the pairs of that frame, not their places. Costs nothing.
     arrival,
     /// Ascending by the key of the first proxy, then of the second, whenever the whole array is read: equal
-    /// sets of pairs give an equal order, whatever the broadphase and the history. Rollback needs this.
-    /// Algorithms are freed in that order, too, so that the dispatcher's manifolds, and with them whole
-    /// trajectories, are equal under all exact broadphases. Costs a sort when the set has changed.
+    /// sets of pairs give an equal order, whatever the broadphase and the history. Needed where a program
+    /// sets boxes back itself; WorldSnapshot does without. Algorithms are freed in that order, too, so that
+    /// the dispatcher's manifolds, and with them whole trajectories, are equal under all exact broadphases.
+    /// Costs a sort when the set has changed.
     canonical,
 };
 

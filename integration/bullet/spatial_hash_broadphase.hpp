@@ -82,11 +82,11 @@ public:
 
     // --- btBroadphaseInterface -------------------------------------------------------------------
 
-    /// Returns a proxy with an address that is fixed for its life. m_uniqueId counts 1, 2, 3 ... and is never
-    /// used again. `shapeType` is ignored. Throws std::length_error beyond 2^28 proxies, and after 2^31 - 1
-    /// unique ids until resetPool(). Cost: O(1), and a look at up to 1,024 ghosts, or a box query where there
-    /// are more; for ghosts and SpatialHashConfig::eagerGroups also that of Pairs::findPairsNow() and of the
-    /// pairs.
+    /// Returns a proxy with an address that is fixed for its life. m_uniqueId counts 1, 2, 3 ...; a number is
+    /// used again only after resetPool(), or where a WorldSnapshot goes back. `shapeType` is ignored. Throws
+    /// std::length_error beyond 2^28 proxies, and after 2^31 - 1 unique ids until resetPool(). Cost: O(1), and a
+    /// look at up to 1,024 ghosts, or a box query where there are more; for ghosts and
+    /// SpatialHashConfig::eagerGroups also that of Pairs::findPairsNow() and of the pairs.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -210,20 +210,21 @@ public:
     /// Cost: that of Pairs::refilterAll(), and of the pairs that come and go.
     void refilterAll(btDispatcher* dispatcher);
 
-    /// From now on takes the proxy's box grown by `margin` [m] on all sides, also on its way where it sweeps:
-    /// two are a pair when their boxes overlap, each grown by its own margin, and queries find the proxy by
-    /// the grown box. proxy->m_aabbMin and m_aabbMax, and getAabb(), stay the box that the program has set.
-    /// Counts from this call on, as setAabb() with the present box does: queries see it at once, ghosts and
-    /// eagerGroups have their pairs at once, others from the next calculateOverlappingPairs() on. A margin
-    /// that is negative, infinite or NaN is asserted, and changes nothing. A new proxy has a margin of 0.
-    /// Cost: as setAabb().
+    /// From now on takes the proxy's box grown by `margin` [m] on all sides, also on its way where it sweeps: two
+    /// are a pair when their boxes overlap, each grown by its own margin, and queries find the proxy by the grown
+    /// box. proxy->m_aabbMin and m_aabbMax, and getAabb(), stay the box that the program has set. Counts from
+    /// this call on, as setAabb() with the present box does: queries see it at once, ghosts and eagerGroups have
+    /// their pairs at once, others from the next calculateOverlappingPairs() on. A margin that is negative,
+    /// infinite or NaN is asserted, and changes nothing. A new proxy has a margin of 0, also after
+    /// refreshBroadphaseProxy(). To Bullet, a pair within the margins is a pair: two dynamic bodies sleep only
+    /// together, and the narrow phase runs in each step while one is awake. Cost: as setAabb().
     void setMargin(btBroadphaseProxy* proxy, btScalar margin, btDispatcher* dispatcher);
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
 
-    /// From now on the two are no pair, whatever groups, masks and the filter say: see Pairs::ignore(). A
-    /// present pair goes at once, with its algorithm and contacts, and ghosts are told. Ends with
-    /// stopIgnoringPair(), or when one of the two is destroyed. The two differ (asserted). Cost: O(1), and that
-    /// of the cache for a pair; for a cache with deferred removal a pass over its pairs.
+    /// From now on the two are no pair, whatever groups, masks and the filter say: see Pairs::ignore(). A present
+    /// pair goes at once, with its algorithm and contacts, and ghosts are told. Ends with stopIgnoringPair(), or
+    /// when one proxy is destroyed, also by refreshBroadphaseProxy(). The two differ (asserted). Cost: O(1), and
+    /// that of the cache for a pair; for a cache with deferred removal a pass over its pairs.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     /// Where the two overlap, and the filter accepts it, they are a pair at once. Cost: as ignorePair().
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
@@ -232,11 +233,11 @@ public:
     [[nodiscard]] bool mayIgnorePairs() const noexcept { return pairs_.mayIgnore(); }
 
     /// Makes the ignored pairs of this proxy those that Bullet's dispatcher refuses: with the objects that its
-    /// btCollisionObject lists by setIgnoreCollisionCheck(), and that are in the world. Others that it had are
-    /// ignored no more, unless the other object lists this one. Call it when the list has changed, also by
-    /// addConstraint() with disableCollisionsBetweenLinkedBodies or removeConstraint(), and when the object, or
-    /// one of the list, has been added. The client is a btCollisionObject; a list may name objects that are
-    /// gone. Cost: a pass over all proxies and ignored pairs, and as ignorePair() for each that changes.
+    /// btCollisionObject lists by setIgnoreCollisionCheck(), and that are in the world. Others that it had, those
+    /// of ignorePair() too, are ignored no more, unless the other object lists this one. Call it when the list
+    /// has changed, also by addConstraint() with disableCollisionsBetweenLinkedBodies or removeConstraint(), and
+    /// when the object, or one of the list, has been added. The client is a btCollisionObject; a list may name
+    /// objects that are gone. Cost: a pass over all proxies and ignored pairs, and as ignorePair() a change.
     void collisionChecksChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
     /// The same for many proxies, in one pass.
     void collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,

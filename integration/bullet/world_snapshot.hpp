@@ -17,19 +17,28 @@
 //           derived from Bullet's. Motion states of dynamic bodies are told where these are; those of kinematic
 //           bodies tell it to Bullet, and are the program's to put back. Of shapes: only which one an object has.
 // Refused   by a sentence that names it: soft bodies, multibodies, actions other than btKinematicCharacterController
-//           (btRaycastVehicle is one), pair caches other than PairCache, contact points with user data, solvers
-//           other than btSequentialImpulseConstraintSolver and those derived from it, joints of unknown types.
+//           (btRaycastVehicle is one), pair caches other than PairCache, contact points with user data, contact
+//           manifolds of the program's own, solvers other than btSequentialImpulseConstraintSolver and those derived
+//           from it, joints of unknown types, a world over a WorldsBroadphase.
+// RTTI      Without it, in Bullet or here, each action is refused, characters too; multibodies are refused only by
+//           their colliders; pairs of a btPairCachingGhostObject, and the angle that a
+//           btHingeAccumulatedAngleConstraint counts, are not saved.
 // Who came  Objects, joints and characters that were added after save(): restore() takes them out of the world. They
 //           are the caller's, to delete or to add again.
 // Who went  Those that were removed after save(): the caller hands them over (Returned) and they are in the world
 //           again; or restore() says which one is missing, and has changed nothing. What was removed and added
 //           again is in the world, and need not be handed over.
-// Ids       A proxy's m_uniqueId is what it was. Those that were given after save() are given again.
+// Ids       m_uniqueId and ProxyId of a proxy are what they were. Those given after save() are given again.
+// Pointers  A proxy that lives from save() to restore() keeps its address. Ask other objects again, by
+//           getBroadphaseHandle(); after read() all of them. Pointers to pairs, algorithms, contact manifolds and
+//           contact points are void after restore().
+// One world A snapshot belongs to the world that it was saved from, or read for. As bytes it reaches another one.
 // Lifetime  Shapes must live as long as a snapshot in which an object has them. Compound shapes must be as they were.
-// Callbacks Contact callbacks are not told of contacts that come back or go, nor ghost callbacks of pairs.
-// Order     Between steps. Callbacks of the broadphase and of its cache are refused. Tick callbacks and motion
-//           states cannot be told from the program, and must not save or restore: the step's forces are not
-//           cleared yet, and would come twice.
+// Callbacks Contact callbacks are not told of contacts that come back or go, nor ghost callbacks of pairs, except
+//           of pairs of objects that restore() takes out: these are told to both, as by removeCollisionObject().
+// Order     Call save() and restore() between steps. Callbacks of the broadphase and of its cache are refused. Calls
+//           from tick callbacks and motion states cannot be detected: never save or restore there. The forces of
+//           the step are not cleared yet, and would count twice.
 // Memory    Keeps its own: to save again takes none in a frame like the last one. Where it runs out, std::bad_alloc
 //           is passed on: save() leaves the snapshot empty, restore() has changed nothing.
 // Threads   Needs the world and this object for itself.
@@ -66,30 +75,39 @@ public:
     WorldSnapshot(WorldSnapshot&& other) noexcept;
     WorldSnapshot& operator=(WorldSnapshot&& other) noexcept;
 
-    /// Saves the world, whose broadphase this is. Returns what is wrong, in a sentence, and leaves the snapshot
-    /// empty then; else nothing. Cost: a pass over objects, pairs and contacts.
+    /// Saves the world, whose broadphase this is. Returns an empty string on success. Otherwise a sentence, and
+    /// leaves the snapshot empty. Cost: a pass over objects, pairs and contacts.
     [[nodiscard]] std::string save(btDiscreteDynamicsWorld& world,
                                    const SpatialHashBroadphase& broadphase);
 
-    /// Puts the world back to what was saved of it. Returns what is wrong, in a sentence; nothing has changed
-    /// then. Any number of times, and to any of several snapshots. Cost: as save(), and that of removing what was
-    /// added and of making algorithms for pairs that were not there.
+    /// Puts the world back to what was saved of it. Returns an empty string on success. Otherwise a sentence, and
+    /// changes nothing. Any number of times, and to any of several snapshots. Cost: as save(), and that of removing
+    /// what was added and of making algorithms for pairs that were not there.
     [[nodiscard]] std::string restore(btDiscreteDynamicsWorld& world,
                                       SpatialHashBroadphase& broadphase,
                                       const Returned& returned = {}) const;
 
     /// Replaces what `bytes` held by the snapshot, to send or to keep. They begin with a version and a checksum.
-    /// Returns what cannot be written, in a sentence, and leaves `bytes` empty then; else nothing. Numbers are as this
-    /// processor, this Bullet and this compiler have them. Settings of the solver and of collision detection are
-    /// not written: both sides must have equal ones.
+    /// Returns an empty string on success. Otherwise a sentence, and leaves `bytes` empty: where an object ignores
+    /// another one, or has a joint, that is not in the world; and where algorithms of removed pairs wait to be freed,
+    /// until the next step. Numbers are as this processor, this Bullet and this compiler have them. Settings of the
+    /// solver and of collision detection are not written: both sides must have equal ones, and an equal
+    /// SpatialHashConfig, but for parallelFor. A world restored from bytes writes the same bytes again. Two worlds in
+    /// equal states may write different ones: the bytes of joints hold their padding.
+    /// Cost: O(what is saved). In a world in contact most bytes are contact points.
     [[nodiscard]] std::string write(std::vector<std::byte>& bytes) const;
 
     /// Takes what write() made of a world with the same objects, such as one that another computer built by the same
     /// calls. Its objects are told by their proxies' unique ids, joints by their type and bodies, characters by their
     /// ghosts. Objects that are not in this world are handed over in the order in which the sentence names their ids.
-    /// Shapes are those that objects have now. Returns what is wrong, in a sentence, and changes nothing then; else
-    /// nothing, and restore() puts the world to what was read: with the same `returned`. Whatever the bytes, nothing
-    /// worse comes of them than objects in odd places.
+    /// Shapes are those that objects have now; compound shapes were built by as many calls as the writer's. An id
+    /// that matches by chance takes a wrong object, unless its type or the changes of its compound shape differ.
+    /// Returns an empty string on success. Otherwise a sentence, and changes nothing. After success, restore() with
+    /// the same `returned` puts the world to what was read. With equal inputs, the steps that follow give the same
+    /// bits as the writer's. Damaged bytes are refused. Forged ones may be read: then objects may be anywhere, and
+    /// nothing worse comes of it. Authenticate the sender.
+    /// Cost: O(what is saved), finding all pairs from scratch, and comparing bodies, joints and characters each with
+    /// all others of their kind.
     [[nodiscard]] std::string read(std::span<const std::byte> bytes, btDiscreteDynamicsWorld& world,
                                    const SpatialHashBroadphase& broadphase,
                                    const Returned& returned = {});

@@ -2,7 +2,8 @@
 #pragma once
 
 // Thousands of small worlds at the same place, in one world of Bullet's: what is in different worlds never
-// pairs, and each world is as fast as alone. For training, and for copies of a level with players of their own.
+// pairs, and the broadphase of each world is as fast as alone (tests/benchmarks/run --only worlds). For training, and
+// for copies of a level with players of their own.
 //
 //     hashphase::WorldsConfig config;
 //     config.worldCount = 300;
@@ -13,14 +14,17 @@
 // Each world is a SpatialHashBroadphase, with a grid of its own, over the pair cache of all. world() leads to
 // it: its queries find what is in that world alone, and clients of grids take its grid().
 //
+// One world   Each object is in one world. What all worlds share, as a floor, is needed once in each: a body a world.
 // All worlds  The members of this class ask all worlds, one after the other, and so do Bullet's own queries,
-//             as btCollisionWorld::rayTest(). Members for a proxy go to its world.
+//             as btCollisionWorld::rayTest(). Members for a proxy go to its world. rayTests(), closestRays()
+//             and createProxies() are those of single worlds alone.
+// Ids         m_uniqueId counts through all worlds. A ProxyId is of one world: others have equal ones.
 // Moving      An object stays in its world until its proxy is created again: change what worldOf reads, then
 //             call btCollisionWorld::refreshBroadphaseProxy().
 // Threads     Queries of all and of single worlds are const in all but name: any number may run at the same
 //             time. Everything else needs the broadphase, with all its worlds, for itself.
-// Callbacks, bad data, memory, misuse: as SpatialHashBroadphase. calculateOverlappingPairs() is not called by
-//             its own callbacks (asserted).
+// Callbacks, bad data, memory, misuse: as SpatialHashBroadphase, but shiftOrigin() cannot be repeated where memory
+//             ran out. calculateOverlappingPairs() is not called by its own callbacks (asserted).
 
 #include <broadphase/core/peak_watch.hpp>
 #include <broadphase/query_cost.hpp>
@@ -46,7 +50,8 @@ struct WorldsConfig {
     int worldCount = 1;
 
     /// Returns the number of the object's world, from 0 on. Asked by createProxy(), and so by
-    /// btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy(), about every object. Required.
+    /// btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy(), about every object. Required. Set what
+    /// it reads before: the user index of a new object is -1, which is no world.
     std::function<int(const btCollisionObject& object)> worldOf{};
 
     /// Settings of each world. Its parallelFor is used over worlds, each of which runs on one thread.
@@ -92,8 +97,9 @@ public:
 
     /// As SpatialHashBroadphase::createProxy(), in the world that WorldsConfig::worldOf names for `userPtr`,
     /// which is a btCollisionObject. Throws std::invalid_argument, and creates nothing, where it is NULL, or
-    /// its world is none of them; remove an object that was to be added, or refreshed, from Bullet's world
-    /// then. m_uniqueId counts through all worlds.
+    /// its world is none of them. Then remove the object from Bullet's world. After a refreshBroadphaseProxy()
+    /// that threw, first call object.setBroadphaseHandle(nullptr): its proxy is gone. m_uniqueId counts through
+    /// all worlds.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -115,8 +121,8 @@ public:
     /// Order: of all worlds, pairs that have parted go first, then pairs that have met come, world by world.
     /// With parallelFor, worlds are updated at the same time, unless there is an overlap filter callback; the
     /// result is equal on any number of threads.
-    /// Cost: that of the worlds in which something has changed, and a look at each other one. These keep
-    /// unused memory until releaseUnusedMemory(), and their lastCost().
+    /// Cost: that of the worlds in which something has changed, and one check for each unchanged world. These
+    /// keep unused memory until releaseUnusedMemory(), and their lastCost().
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -136,9 +142,11 @@ public:
 
     // --- Many at once ----------------------------------------------------------------------------
 
-    /// As those of SpatialHashBroadphase; proxies may be of any worlds.
+    /// setAabb() for each proxy, in their order, on the caller's thread; proxies may be of any worlds. All three
+    /// spans have the same length (asserted).
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
+    /// As SpatialHashBroadphase::destroyProxies(); proxies may be of any worlds.
     void destroyProxies(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
 
     // --- Beyond Bullet, as SpatialHashBroadphase -------------------------------------------------
@@ -162,7 +170,8 @@ public:
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
-    /// Shifts all worlds. Where memory runs out, the first worlds are shifted, and the others are not.
+    /// Shifts all worlds. Where memory runs out, the first worlds are shifted, and the others are not: the call
+    /// cannot be repeated, which would shift the first ones twice.
     std::size_t shiftOrigin(const btVector3& shift);
 
     /// The configuration it was made with.

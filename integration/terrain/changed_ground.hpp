@@ -10,11 +10,11 @@
 //     changed.clear();
 //
 // A frame    Change the terrain, update the grids, and then findStanding() in each grid with bodies; clear() at
-//            last. Without clear() the same bodies are found again, and more of them. Before the update, all is
-//            found as well, at the cost of one more.
+//            last. Without clear() the same bodies are found again, and more of them. findStanding() before the
+//            update finds the same, but may cost as much as another update.
 // Notes      The box of each triangle that was added, of each that was removed, and of each that was replaced
-//            by another, before and after. Boxes that make one box together become one. A shift of the origin
-//            is no change, and shifts them.
+//            by another, before and after. A box that makes one box with the previous one is joined to it. A shift
+//            of the origin is no change, and shifts them.
 // Memory     Is taken once, when this is made. Where there is no room for another box, each two that follow
 //            each other become one that holds both: more may be found than stands there, and never less.
 // Units      metres

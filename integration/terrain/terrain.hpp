@@ -12,9 +12,10 @@
 //
 // A frame    Change the ground, then ask; ask about many points in one call. Where the ground has changed, and
 //            what stands there, says ChangedGround (changed_ground.hpp).
-// Numbers    A triangle keeps its number until it is removed. Then the number is free, and a later triangle
-//            takes it: a ground of which as much comes as goes has no more numbers after hours. A free number
-//            has NaN corners, no normal and the null proxy, as that of a refused triangle.
+// Numbers    A triangle keeps its number until it is removed. Then the number is free, and a later triangle may
+//            take it. add() needs free numbers side by side: chunks of one size take again what others left; chunks
+//            of different sizes leave gaps, so that size() stays somewhat above the most triangles at a time. A free
+//            number has NaN corners, no normal and the null proxy, as that of a refused triangle.
 // History    What has left decides nothing: answers are those of a new terrain with the same triangles, under the
 //            same numbers, and the same seam tolerance, which follows the calls that brought these triangles.
 // Others     The grid may hold other proxies, and may change; this costs only time.
@@ -110,8 +111,9 @@ public:
 
     /// Sets the corners of the triangles from number `first` on, as many as are handed in; all else is as in
     /// add(). They keep their numbers, and their proxies, but for those that are refused now or were before.
-    /// A corner that has not changed costs a comparison. Cost: O(1) for each triangle. Allocates nothing
-    /// unless triangles are refused, or were.
+    /// An unchanged triangle is computed again, but neither filed nor noted by ChangedGround. All numbers must
+    /// be taken (asserted): for more triangles than before, remove() and add(). Cost: O(1) for each triangle.
+    /// Allocates nothing unless triangles are refused, or were.
     AddedTriangles replace(std::uint32_t first, std::span<const Point> corners);
     AddedTriangles replace(std::uint32_t first, std::span<const Point> vertices,
                            std::span<const std::uint32_t> indices);
@@ -128,8 +130,8 @@ public:
     /// each Grid::shiftOrigin() of the grid. Cost: O(triangles).
     void shiftOrigin(const Point& shift);
 
-    /// All numbers are below it: those of triangles, of refused ones, and free ones. The most that were taken
-    /// since clear(), and what did not fit between them.
+    /// All numbers are below it: those of triangles, of refused ones, and free ones. Never shrinks until
+    /// clear().
     [[nodiscard]] std::uint32_t size() const noexcept {
         return static_cast<std::uint32_t>(triangles_.size());
     }
@@ -152,21 +154,21 @@ public:
 
     // --- Seams -----------------------------------------------------------------------------------
 
-    /// Sets how far beside a triangle a point may lie, as seen from above, and still belong to it where no
-    /// other triangle is [m], for all points; 0 for not at all. Without a value it follows the triangles, as it
-    /// does by default. For those whose corners were computed from larger numbers than seamTolerance() knows
-    /// of, or who want it to be the same whatever comes and goes. Gaps twice as wide are closed, and steps of
-    /// the ground count as so much wider. NaN, negative numbers and those above kFarthest are asserted, and
-    /// change nothing. Outlasts clear(). Cost: O(1).
+    /// A point beside all triangles belongs to the nearest one within `tolerance` [m], seen from above. 0: never.
+    /// nullopt: automatic, as by default: seamTolerance() then follows the triangles. Set it where corners were
+    /// computed from larger numbers than seamTolerance() knows, or where it must not depend on which triangles
+    /// come and go. Gaps up to twice the tolerance are closed, and a ledge reaches out by the tolerance. NaN,
+    /// negative numbers and those above kFarthest are asserted, and change nothing. clear() keeps it. Cost: O(1).
     void setSeamTolerance(std::optional<Scalar> tolerance);
 
-    /// Returns what was set, or how far by itself: the amount by which rounding may move an edge near the
-    /// point [m]. This is 8 epsilon of Scalar times a sum: the point's larger coordinate along the ground, now
-    /// or before the shifts of the origin, and the largest extent and height of the triangles of one add() or
-    /// replace(), rounded up to a power of two, at most 16 km. Only triangles count that are left, and shifts
-    /// since they came. (A corner placed by a transform is six sums and products of such numbers along two
-    /// axes, each off by half an epsilon.) In single precision a twentieth of a millimetre for chunks of 32 m
-    /// near the origin, 1 mm at 1 km; in double precision 2 pm.
+    /// Returns the tolerance [m] at the point: what was set, or the automatic one, by which rounding may move an
+    /// edge near the point. That is 8 epsilon of Scalar times a sum of two numbers. The first is the point's larger
+    /// coordinate along the ground, now or before a shift of the origin. The second is the largest extent plus
+    /// height of the triangles of one add() or replace(), rounded up to a power of two, at most 16 km. It counts
+    /// each add() or replace() of which a triangle is left, with all that it brought, and the shifts since.
+    /// (A corner placed by a transform is six sums and products of such numbers along two axes, each off by half
+    /// an epsilon.) In single precision a twentieth of a millimetre for chunks of 32 m near the origin, 1 mm at
+    /// 1 km; in double precision 2 pm.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
         return setTolerance_
                    ? *setTolerance_

@@ -38,7 +38,7 @@ TEST(TerrainPage, GroundLiesBelow) {
 
 TEST(TerrainPage, GroundChanges) {
     const std::vector<Point> vertices{{-50, 0, 50}, {50, 0, 50}, {0, 10, -50}};
-    const std::vector<Point> finer{{-50, 1, 50}, {50, 1, 50}, {0, 11, -50}};
+    const std::vector<Point> raised{{-50, 1, 50}, {50, 1, 50}, {0, 11, -50}};
     const std::vector<std::uint32_t> indices{0, 1, 2};
     Grid<float> ground;
     Terrain<float> terrain(ground);
