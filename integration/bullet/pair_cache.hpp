@@ -393,7 +393,8 @@ private:
     template <class Visit>
     void forEachPairOf(const btBroadphaseProxy& proxy, const Visit& visit);
     void tellGhostsAgain(std::uint64_t ids, const btBroadphasePair& pair, btDispatcher* dispatcher);
-    void removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher, Remover remover);
+    template <class Visit>
+    void forEachUnnoted(const btBroadphaseProxy& proxy, const Visit& visit);
     void processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher);
     void prepareWholeArray();
     void sort();

@@ -142,6 +142,16 @@ std::vector<PairCache::PairSortKey> PairCache::notesOf(const btBroadphaseProxy& 
     return notes;
 }
 
+// Without memory to note pairs down: from the end, for the last pair takes the place of one that goes.
+template <class Visit>
+void PairCache::forEachUnnoted(const btBroadphaseProxy& proxy, const Visit& visit) {
+    for (int i = pairs_.size() - 1; i >= 0; i = std::min(i, pairs_.size()) - 1) {
+        if (pairs_[i].m_pProxy0 == &proxy || pairs_[i].m_pProxy1 == &proxy) {
+            visit(ids_.keys()[static_cast<std::size_t>(i)], pairs_[i]);
+        }
+    }
+}
+
 void PairCache::removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                       btDispatcher* dispatcher) {
     removePairsOfOne(*proxy, dispatcher, Remover::other);
@@ -151,7 +161,9 @@ void PairCache::removePairsOfOne(btBroadphaseProxy& proxy, btDispatcher* dispatc
                                  Remover remover) {
     std::vector<PairSortKey> notes;
     if (!detail::hasRoomFor([&] { notes = notesOf(proxy); })) {
-        removeUnnoted(proxy, dispatcher, remover);
+        forEachUnnoted(proxy, [&](std::uint64_t ids, const btBroadphasePair& /*pair*/) {
+            remove(ids, dispatcher, Freeing::now, remover);
+        });
         return;
     }
     std::size_t first = 0;
@@ -170,20 +182,15 @@ void PairCache::removePairsOfOne(btBroadphaseProxy& proxy, btDispatcher* dispatc
     scratch_ = std::move(notes);
 }
 
-// Without memory to note pairs down: from the end, for the last pair takes the place of one that goes.
-void PairCache::removeUnnoted(const btBroadphaseProxy& proxy, btDispatcher* dispatcher,
-                              Remover remover) {
-    for (int i = pairs_.size() - 1; i >= 0; i = std::min(i, pairs_.size()) - 1) {
-        if (pairs_[i].m_pProxy0 == &proxy || pairs_[i].m_pProxy1 == &proxy) {
-            remove(ids_.keys()[static_cast<std::size_t>(i)], dispatcher, Freeing::now, remover);
-        }
-    }
-}
-
-// Calls visit(ids, pair) for each; pairs may go meanwhile.
+// Calls visit(ids, pair) for each; pairs may go meanwhile. Never for want of memory does it fail: Bullet cleans
+// the pairs of what it removes.
 template <class Visit>
 void PairCache::forEachPairOf(const btBroadphaseProxy& proxy, const Visit& visit) {
-    std::vector<PairSortKey> notes = notesOf(proxy);
+    std::vector<PairSortKey> notes;
+    if (!detail::hasRoomFor([&] { notes = notesOf(proxy); })) {
+        forEachUnnoted(proxy, visit);
+        return;
+    }
     for (const PairSortKey& note : notes) {
         if (const std::uint32_t index = indexOf(note); index != kNone) {
             visit(note.uniqueIds, pairs_[static_cast<int>(index)]);

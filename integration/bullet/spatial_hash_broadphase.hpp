@@ -229,8 +229,6 @@ public:
     /// Where the two overlap, and the filter accepts it, they are a pair at once. Cost: as ignorePair().
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     [[nodiscard]] bool isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const;
-    /// Whether any two may be ignored.
-    [[nodiscard]] bool mayIgnorePairs() const noexcept { return pairs_.mayIgnore(); }
 
     /// Makes the ignored pairs of this proxy those that Bullet's dispatcher refuses: with the objects that its
     /// btCollisionObject lists by setIgnoreCollisionCheck(), and that are in the world. Others that it had, those
@@ -418,6 +416,7 @@ private:
     friend class WorldsBroadphase;
     friend class detail::LivingBroadphase;
     friend class detail::BroadphaseImage;
+    friend struct detail::CacheWatch;
     SpatialHashConfig config_;
     Grid<btScalar> grid_;
     std::unique_ptr<Sweeps<btScalar>> sweeps_;  // if the configuration asks for it

@@ -18,8 +18,10 @@
 //           bodies tell it to Bullet, and are the program's to put back. Of shapes: only which one an object has.
 // Refused   by a sentence that names it: soft bodies, multibodies, actions other than btKinematicCharacterController
 //           (btRaycastVehicle is one), pair caches other than PairCache, contact points with user data, contact
-//           manifolds of the program's own, solvers other than btSequentialImpulseConstraintSolver and those derived
-//           from it, joints of unknown types, a world over a WorldsBroadphase.
+//           manifolds of the program's own, collision algorithms other than those of Bullet's default configuration
+//           (btGImpactCollisionAlgorithm is one), dispatchers other than btCollisionDispatcher and those derived from
+//           it, solvers other than btSequentialImpulseConstraintSolver and those derived from it, joints of unknown
+//           types, worlds of a WorldsBroadphase, compound shapes that have changed since the last step.
 // RTTI      Without it, in Bullet or here, each action is refused, characters too; multibodies are refused only by
 //           their colliders; pairs of a btPairCachingGhostObject, and the angle that a
 //           btHingeAccumulatedAngleConstraint counts, are not saved.
@@ -27,7 +29,8 @@
 //           are the caller's, to delete or to add again.
 // Who went  Those that were removed after save(): the caller hands them over (Returned) and they are in the world
 //           again; or restore() says which one is missing, and has changed nothing. What was removed and added
-//           again is in the world, and need not be handed over.
+//           again is in the world, and need not be handed over, unless it came back with another shape: it might
+//           be another object at the same address.
 // Ids       m_uniqueId and ProxyId of a proxy are what they were. Those given after save() are given again.
 // Pointers  A proxy that lives from save() to restore() keeps its address. Ask other objects again, by
 //           getBroadphaseHandle(); after read() all of them. Pointers to pairs, algorithms, contact manifolds and

@@ -17,7 +17,8 @@
 // One world   Each object is in one world. What all worlds share, as a floor, is needed once in each: a body a world.
 // All worlds  The members of this class ask all worlds, one after the other, and so do Bullet's own queries,
 //             as btCollisionWorld::rayTest(). Members for a proxy go to its world. rayTests(), closestRays()
-//             and createProxies() are those of single worlds alone.
+//             and createProxies() are those of single worlds alone. Casts of fast bodies look through all worlds,
+//             and meet nobody of another one.
 // Ids         m_uniqueId counts through all worlds. A ProxyId is of one world: others have equal ones.
 // Moving      An object stays in its world until its proxy is created again: change what worldOf reads, then
 //             call btCollisionWorld::refreshBroadphaseProxy().

@@ -34,6 +34,9 @@ std::string BroadphaseImage::faultOf(const SpatialHashBroadphase& broadphase) {
     if (cache == nullptr) {
         return "The pair cache is not a hashphase::PairCache.";
     }
+    if (broadphase.isWorld()) {
+        return "The broadphase is one of many worlds.";
+    }
     const bool isWithin = cache->processDepth_ > 0 || broadphase.isApplying_ ||
                           QueryScope::isWithin(cache) || QueryScope::isWithin(&broadphase) ||
                           QueryScope::isWithin(&broadphase.grid_.store());
@@ -84,7 +87,8 @@ void BroadphaseImage::makeRoom(SpatialHashBroadphase& broadphase) const {
     cache.pairs_.reserve(static_cast<int>(pairs_.size()));
     ensureCapacity(cache.retired_, retired_.size());
     ensureCapacity(algorithms_, pairs_.size());
-    if (!takenOut_.empty() && takenOutAgain_ == nullptr) {
+    takenOutAgain_ = nullptr;
+    if (!takenOut_.empty()) {
         takenOutAgain_ = std::make_unique<std::vector<BulletProxyPair>>();
         takenOutAgain_->reserve(takenOut_.size());
     }
@@ -175,10 +179,11 @@ std::span<btBroadphasePair> BroadphaseImage::pairsOf(
                              : std::span(&pairs[0], static_cast<std::size_t>(pairs.size()));
 }
 
-void BroadphaseImage::freeAlgorithmsOf(const SpatialHashBroadphase& broadphase, const void* client,
-                                       btDispatcher& dispatcher) {
+void BroadphaseImage::freeAlgorithmsOf(const SpatialHashBroadphase& broadphase,
+                                       const ObjectNumbers& clients, btDispatcher& dispatcher) {
     for (btBroadphasePair& pair : pairsOf(broadphase)) {
-        if (pair.m_pProxy0->m_clientObject == client || pair.m_pProxy1->m_clientObject == client) {
+        if (clients.has(pair.m_pProxy0->m_clientObject) ||
+            clients.has(pair.m_pProxy1->m_clientObject)) {
             freeQuietly(std::exchange(pair.m_algorithm, nullptr), &dispatcher);
         }
     }

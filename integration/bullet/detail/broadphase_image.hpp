@@ -50,14 +50,16 @@ public:
     [[nodiscard]] static btCollisionAlgorithm*& retired(const SpatialHashBroadphase& broadphase,
                                                         std::size_t i) noexcept;
 
-    /// Frees the algorithms of the pairs of that client.
-    static void freeAlgorithmsOf(const SpatialHashBroadphase& broadphase, const void* client,
-                                 btDispatcher& dispatcher);
+    /// Frees the algorithms of the pairs of these clients.
+    static void freeAlgorithmsOf(const SpatialHashBroadphase& broadphase,
+                                 const ObjectNumbers& clients, btDispatcher& dispatcher);
 
     /// The proxy of that index.
     [[nodiscard]] static btBroadphaseProxy* proxyAt(const SpatialHashBroadphase& broadphase,
                                                     std::uint32_t index) noexcept;
 
+    /// Whether all clients have such numbers.
+    [[nodiscard]] bool areClientsAmong(const ObjectNumbers& numbers) const;
     /// Writes it; clients by their numbers among these.
     void write(ByteWriter& to, const ObjectNumbers& numbers) const;
     /// Reads what was written; `objects` are the clients by their numbers. Returns what is wrong.

@@ -34,6 +34,12 @@ bool isRepeated(std::vector<std::uint64_t>& numbers) {
 
 }  // namespace
 
+bool BroadphaseImage::areClientsAmong(const ObjectNumbers& numbers) const {
+    return std::ranges::all_of(proxies_, [&](const Broadphase::Proxy& proxy) {
+        return proxy.id.isNull() || numbers.has(proxy.m_clientObject);
+    });
+}
+
 void BroadphaseImage::write(ByteWriter& to, const ObjectNumbers& numbers) const {
     std::vector<std::byte> grid;
     grid_.write(grid);

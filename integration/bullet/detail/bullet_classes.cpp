@@ -3,12 +3,22 @@
 
 #include <broadphase/core/compiler.hpp>
 
+#include <BulletCollision/CollisionDispatch/btBoxBoxCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btCompoundCompoundCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btConvexPlaneCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btEmptyCollisionAlgorithm.h>
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
+#include <BulletCollision/CollisionDispatch/btSphereSphereCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btSphereTriangleCollisionAlgorithm.h>
 #include <BulletDynamics/Character/btKinematicCharacterController.h>
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+
+#include <typeinfo>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
@@ -21,6 +31,16 @@ Class* as([[maybe_unused]] Base& object) {
     }
 #endif
     return nullptr;
+}
+
+// Exactly of one of these classes.
+template <class... Classes>
+bool isOneOf([[maybe_unused]] const btCollisionAlgorithm& algorithm) {
+#if HASHPHASE_HAS_RTTI
+    return !knowsItsType(algorithm) || ((typeid(algorithm) == typeid(Classes)) || ...);
+#else
+    return true;
+#endif
 }
 
 }  // namespace
@@ -40,6 +60,26 @@ btSequentialImpulseConstraintSolver* asSequentialImpulseSolver(btConstraintSolve
     return solver->getSolverType() == BT_SEQUENTIAL_IMPULSE_SOLVER
                ? static_cast<btSequentialImpulseConstraintSolver*>(solver)
                : nullptr;
+}
+
+btCollisionDispatcher* asCollisionDispatcher(btDispatcher* dispatcher) {
+    return knowsItsType(*dispatcher) ? as<btCollisionDispatcher>(*dispatcher)
+                                     : static_cast<btCollisionDispatcher*>(dispatcher);
+}
+
+bool isOfKind(const btCollisionAlgorithm& algorithm, AlgorithmKind kind) {
+    switch (kind) {
+        case AlgorithmKind::compound:
+            return isOneOf<btCompoundCollisionAlgorithm>(algorithm);
+        case AlgorithmKind::twoCompounds:
+            return isOneOf<btCompoundCompoundCollisionAlgorithm>(algorithm);
+        case AlgorithmKind::leaf:
+        default:
+            return isOneOf<btConvexConvexAlgorithm, btConvexConcaveCollisionAlgorithm,
+                           btBoxBoxCollisionAlgorithm, btConvexPlaneCollisionAlgorithm,
+                           btSphereSphereCollisionAlgorithm, btSphereTriangleCollisionAlgorithm,
+                           btEmptyAlgorithm>(algorithm);
+    }
 }
 
 bool hasMultiBodies(btDiscreteDynamicsWorld& world) {

@@ -7,9 +7,12 @@
 #include <integration/bullet/precision.hpp>
 
 class btActionInterface;
+class btCollisionAlgorithm;
+class btCollisionDispatcher;
 class btCollisionObject;
 class btConstraintSolver;
 class btDiscreteDynamicsWorld;
+class btDispatcher;
 class btKinematicCharacterController;
 class btPairCachingGhostObject;
 class btSequentialImpulseConstraintSolver;
@@ -24,6 +27,14 @@ namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 /// Where nothing is known, what it says of itself is believed.
 [[nodiscard]] btSequentialImpulseConstraintSolver* asSequentialImpulseSolver(
     btConstraintSolver* solver);
+
+[[nodiscard]] btCollisionDispatcher* asCollisionDispatcher(btDispatcher* dispatcher);
+
+/// Which kind of algorithm Bullet's default configuration makes for two shapes.
+enum class AlgorithmKind { leaf, compound, twoCompounds };
+
+/// Whether it is one of these, for such shapes. Where nothing is known, it is believed to be.
+[[nodiscard]] bool isOfKind(const btCollisionAlgorithm& algorithm, AlgorithmKind kind);
 
 /// Whether it has multibodies.
 [[nodiscard]] bool hasMultiBodies(btDiscreteDynamicsWorld& world);

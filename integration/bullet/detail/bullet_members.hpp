@@ -201,6 +201,19 @@ struct CompoundMembers : btCompoundCollisionAlgorithm {
     }
 };
 
+struct PairCacheMembers : btHashedOverlappingPairCache {
+    /// As it was made, with its memory: nobody is told, and algorithms are not freed.
+    static void clear(btHashedOverlappingPairCache& cache) {
+        cache.getOverlappingPairArray().resizeNoInitialize(0);
+        for (auto* const list :
+             {&(cache.*(&PairCacheMembers::m_hashTable)), &(cache.*(&PairCacheMembers::m_next))}) {
+            for (int i = 0; i < list->size(); ++i) {
+                (*list)[i] = BT_NULL_PAIR;
+            }
+        }
+    }
+};
+
 struct WorldMembers : btDiscreteDynamicsWorld {
     template <class Visit>
     static void forEach(btDiscreteDynamicsWorld& world, const Visit& visit) {

@@ -56,7 +56,7 @@ void CacheWatch::endCache() noexcept {
 }
 
 bool CacheWatch::mayRefuse() const noexcept {
-    return owner.mayIgnorePairs();
+    return owner.pairs_.mayIgnore();
 }
 
 bool CacheWatch::refuses(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const noexcept {

@@ -24,6 +24,16 @@ public:
             return;
         }
         const AlgorithmKind kind = kindOf(a, b);
+        if (!isOfKind(*algorithm, kind)) {
+            image_.fault_ = "A collision algorithm is not one of Bullet's default ones.";
+            return;
+        }
+        if (kind != AlgorithmKind::leaf && !isUpToDate(*algorithm, a, b)) {
+            image_.fault_ =
+                "A compound shape has changed since its pairs were last looked at. Call "
+                "SpatialHashBroadphase::shapeChanged() for its object, and step the world.";
+            return;
+        }
         if (kind == AlgorithmKind::leaf) {
             writeManifolds(*algorithm);
             return;
@@ -72,6 +82,7 @@ void ContactImage::begin() {
     heads_.clear();
     points_.clear();
     manifolds_.clear();
+    fault_.clear();
 }
 
 void ContactImage::save(const btBroadphasePair& pair) {
@@ -92,6 +103,9 @@ void ContactImage::save(const btAlignedObjectArray<btPersistentManifold*>& manif
 }
 
 std::string ContactImage::end(const btCollisionDispatcher& dispatcher) {
+    if (!fault_.empty()) {
+        return fault_;
+    }
     const auto count = static_cast<std::size_t>(dispatcher.getNumManifolds());
     if (count != manifolds_.size()) {
         std::ostringstream sentence;

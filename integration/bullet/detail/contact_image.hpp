@@ -35,10 +35,10 @@ void freeQuietly(btCollisionAlgorithm* algorithm, btDispatcher* dispatcher);
     return *static_cast<const btCollisionObject*>(proxy->m_clientObject);
 }
 
-/// The shapes of the two objects of a pair.
-struct ShapePair {
-    const btCollisionShape* a;
-    const btCollisionShape* b;
+/// The two objects of a pair.
+struct ObjectPair {
+    const btCollisionObject* a;
+    const btCollisionObject* b;
 };
 
 class ContactImage {
@@ -69,10 +69,10 @@ public:
 
     /// Writes it; bodies by their numbers among these.
     void write(ByteWriter& to, const ObjectNumbers& numbers) const;
-    /// Reads what was written of pairs with such shapes, and one list of manifolds behind them. Returns whether that
-    /// can be: algorithms of compound shapes have their children, and each manifold has one owner.
+    /// Reads what was written of such pairs, and one list of manifolds behind them. Returns whether that can be:
+    /// algorithms of compound shapes have their children, and each manifold has one owner, whose objects it has.
     [[nodiscard]] bool read(ByteReader& from, std::span<btCollisionObject* const> objects,
-                            std::span<const ShapePair> shapesOfPairs);
+                            std::span<const ObjectPair> pairs);
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
@@ -103,6 +103,7 @@ private:
     RoomyList<btManifoldPoint> points_;
 
     // Scratch.
+    std::string fault_;
     btManifoldArray found_;
     mutable std::size_t at_ = 0;                            // in owned_
     mutable std::vector<btPersistentManifold*> manifolds_;  // as heads_; null where none was made

@@ -4,6 +4,7 @@
 
 #include <integration/bullet/detail/contact_image.hpp>
 
+#include <broadphase/core/flat_set.hpp>
 #include <integration/bullet/detail/algorithm_kind.hpp>
 #include <integration/bullet/detail/bullet_members.hpp>
 #include <integration/bullet/detail/member_bytes.hpp>
@@ -20,32 +21,16 @@ class ContactImage::Checker {
 public:
     explicit Checker(const ContactImage& image) : image_(image) {}
 
-    [[nodiscard]] bool isAlgorithm(const btCollisionShape& a, const btCollisionShape& b) {
-        const int has = next();
-        if (has != 1) {
-            return has == 0;
-        }
-        const AlgorithmKind kind = kindOf(a, b);
-        if (kind == AlgorithmKind::leaf) {
-            return areManifolds(1);
-        }
-        const btCompoundShape& compound = compoundOf(a.isCompound() ? a : b);
-        const btCollisionShape& other = a.isCompound() ? b : a;
-        if (next() != compound.getNumChildShapes()) {
-            return false;
-        }
-        for (int i = 0; i < compound.getNumChildShapes(); ++i) {
-            if (!isAlgorithm(*compound.getChildShape(i), other)) {
-                return false;
-            }
-        }
-        return kind == AlgorithmKind::compound || areChildPairs(compoundOf(a), compoundOf(b));
+    [[nodiscard]] bool isAlgorithm(const ObjectPair& pair) {
+        pair_ = pair;
+        return isAlgorithm(*pair.a->getCollisionShape(), *pair.b->getCollisionShape());
     }
 
+    /// Of any two objects.
     [[nodiscard]] bool areManifolds(int most) {
         const int count = next();
         ownedCount_ += static_cast<std::size_t>(std::max(count, 0));
-        return 0 <= count && count <= most;
+        return 0 <= count && count <= most && ownedCount_ <= image_.heads_.size();
     }
 
     /// Whether that was all, and each manifold has a place of its own.
@@ -61,18 +46,51 @@ public:
     }
 
 private:
+    [[nodiscard]] bool isAlgorithm(const btCollisionShape& a, const btCollisionShape& b) {
+        const int has = next();
+        if (has != 1) {
+            return has == 0;
+        }
+        const AlgorithmKind kind = kindOf(a, b);
+        if (kind == AlgorithmKind::leaf) {
+            return isManifoldOfPair();
+        }
+        const btCompoundShape& compound = compoundOf(a.isCompound() ? a : b);
+        const btCollisionShape& other = a.isCompound() ? b : a;
+        if (next() != compound.getNumChildShapes()) {
+            return false;
+        }
+        for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+            if (!isAlgorithm(*compound.getChildShape(i), other)) {
+                return false;
+            }
+        }
+        return kind == AlgorithmKind::compound || areChildPairs(compoundOf(a), compoundOf(b));
+    }
+
+    [[nodiscard]] bool isManifoldOfPair() {
+        if (!areManifolds(1)) {
+            return false;
+        }
+        const Head* const head = ownedCount_ > 0 ? &image_.heads_[ownedCount_ - 1] : nullptr;
+        return image_.owned_[at_ - 1] == 0 ||
+               (head->bodies[0] == pair_.a && head->bodies[1] == pair_.b) ||
+               (head->bodies[0] == pair_.b && head->bodies[1] == pair_.a);
+    }
     [[nodiscard]] bool areChildPairs(const btCompoundShape& a, const btCompoundShape& b) {
         const int count = next();
-        std::vector<std::array<int, 2>> met;
+        FlatSet met;
         for (int i = 0; i < count; ++i) {
             const std::array<int, 2> children{next(), next()};
             const bool areThere = children[0] >= 0 && children[0] < a.getNumChildShapes() &&
                                   children[1] >= 0 && children[1] < b.getNumChildShapes();
-            if (!areThere || std::find(met.begin(), met.end(), children) != met.end() ||
+            const std::uint64_t key = static_cast<std::uint64_t>(children[0]) << 32 |
+                                      static_cast<std::uint32_t>(children[1]);
+            if (!areThere || met.contains(key) ||
                 !isAlgorithm(*a.getChildShape(children[0]), *b.getChildShape(children[1]))) {
                 return false;
             }
-            met.push_back(children);
+            met.findOrInsert(key);
         }
         return count >= 0;
     }
@@ -80,6 +98,7 @@ private:
     [[nodiscard]] int next() { return at_ < image_.owned_.size() ? image_.owned_[at_++] : -1; }
 
     const ContactImage& image_;
+    ObjectPair pair_{};
     std::size_t ownedCount_ = 0;
     std::size_t at_ = 0;
 };
@@ -104,7 +123,7 @@ void ContactImage::write(ByteWriter& to, const ObjectNumbers& numbers) const {
 }
 
 bool ContactImage::read(ByteReader& from, std::span<btCollisionObject* const> objects,
-                        std::span<const ShapePair> shapesOfPairs) {
+                        std::span<const ObjectPair> pairs) {
     begin();
     const auto ownedCount = from.read<std::uint32_t>();
     if (ownedCount > from.left() / sizeof(int)) {
@@ -146,10 +165,8 @@ bool ContactImage::read(ByteReader& from, std::span<btCollisionObject* const> ob
         points_.push_back(point);
     }
     Checker checker(*this);
-    return std::ranges::all_of(shapesOfPairs,
-                               [&](const ShapePair& shapes) {
-                                   return checker.isAlgorithm(*shapes.a, *shapes.b);
-                               }) &&
+    return std::ranges::all_of(pairs,
+                               [&](const ObjectPair& pair) { return checker.isAlgorithm(pair); }) &&
            checker.areManifolds(static_cast<int>(headCount)) && checker.isAtEnd();
 }
 

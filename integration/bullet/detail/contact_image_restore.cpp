@@ -16,7 +16,6 @@
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
 #include <algorithm>
-#include <limits>
 #include <new>
 #include <span>
 #include <utility>
@@ -182,7 +181,8 @@ private:
         const btCollisionObjectWrapper& compound = isFirst ? a : b;
         const btCollisionObjectWrapper& other = isFirst ? b : a;
         const int count = next();
-        if (present != nullptr && !isUpToDate(*present, a, b)) {
+        if (present != nullptr &&
+            !isUpToDate(*present, *a.getCollisionShape(), *b.getCollisionShape())) {
             freeQuietly(std::exchange(present, nullptr), &dispatcher_);
         }
         if (present == nullptr) {
@@ -195,24 +195,6 @@ private:
             children[i] = build(children[i], childOf(compound, i), other);
         }
         return present;
-    }
-
-    [[nodiscard]] static bool isUpToDate(btCollisionAlgorithm& algorithm,
-                                         const btCollisionObjectWrapper& a,
-                                         const btCollisionObjectWrapper& b) {
-        const auto revisionOf = [](const btCollisionObjectWrapper& wrapper) {
-            return compoundOf(*wrapper.getCollisionShape()).getUpdateRevision();
-        };
-        const bool isFirst = a.getCollisionShape()->isCompound();
-        if (isFirst && b.getCollisionShape()->isCompound()) {
-            const auto& two = static_cast<btCompoundCompoundCollisionAlgorithm&>(algorithm);
-            return two.*revealed(btCompoundCompoundCollisionAlgorithm_m_compoundShapeRevision0()) ==
-                       revisionOf(a) &&
-                   two.*revealed(btCompoundCompoundCollisionAlgorithm_m_compoundShapeRevision1()) ==
-                       revisionOf(b);
-        }
-        return CompoundMembers::revision(static_cast<btCompoundCollisionAlgorithm&>(algorithm)) ==
-               revisionOf(isFirst ? a : b);
     }
 
     [[nodiscard]] static btCollisionObjectWrapper childOf(const btCollisionObjectWrapper& compound,
@@ -267,6 +249,11 @@ void ContactImage::beginRestore() const {
 btCollisionAlgorithm* ContactImage::restore(btCollisionAlgorithm* present,
                                             const btBroadphasePair& pair,
                                             btCollisionDispatcher& dispatcher) const {
+    if (owned_[at_] == 0) {  // perhaps a proxy without an object
+        ++at_;
+        freeQuietly(present, &dispatcher);
+        return nullptr;
+    }
     const btCollisionObject& a = clientOf(pair.m_pProxy0);
     const btCollisionObject& b = clientOf(pair.m_pProxy1);
     const btCollisionObjectWrapper wrapperOfA(nullptr, a.getCollisionShape(), &a,
@@ -303,14 +290,15 @@ void ContactImage::restore(btAlignedObjectArray<btPersistentManifold*>& manifold
     builder.take(manifolds, count);
 }
 
-// Should there be others than were saved, which bytes of a stranger's can bring about, they come last.
+// Others than were saved come last, in their order: of another world that has the same dispatcher, or of what
+// bytes of a stranger's have brought about.
 void ContactImage::endRestore(btCollisionDispatcher& dispatcher) const {
     const std::span list(dispatcher.getInternalManifoldPointer(),
                          static_cast<std::size_t>(dispatcher.getNumManifolds()));
     const bool areTheSame =
         list.size() == manifolds_.size() && std::ranges::count(manifolds_, nullptr) == 0;
     for (std::size_t i = 0; !areTheSame && i < list.size(); ++i) {
-        list[i]->m_index1a = std::numeric_limits<int>::max();
+        list[i]->m_index1a = static_cast<int>(manifolds_.size() + i);
     }
     const btManifoldPoint* points = points_.begin();
     for (std::size_t i = 0; i < manifolds_.size(); ++i) {

@@ -2,6 +2,7 @@
 #include <integration/bullet/detail/ghost_image.hpp>
 
 #include <broadphase/core/ensure_capacity.hpp>
+#include <integration/bullet/detail/bullet_members.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -35,27 +36,21 @@ void GhostImage::makeRoom(std::size_t pairCount) const {
     ensureCapacity(detached_, pairCount);
 }
 
+// Not pair by pair: of those whose other proxy is gone, the cache would find none.
 void GhostImage::detach(btPairCachingGhostObject& ghost) const {
     btHashedOverlappingPairCache& cache = *ghost.getOverlappingPairCache();
     btBroadphasePairArray& pairs = cache.getOverlappingPairArray();
-    while (pairs.size() > 0) {
-        btBroadphasePair& pair = pairs[pairs.size() - 1];
-        detached_.push_back({placeOf(ghost, *pair.m_pProxy0, *pair.m_pProxy1),
-                             std::exchange(pair.m_algorithm, nullptr)});
-        cache.removeOverlappingPair(pair.m_pProxy0, pair.m_pProxy1, nullptr);
+    for (int i = 0; i < pairs.size(); ++i) {
+        detached_.push_back(
+            {{&ghost, pairs[i].m_pProxy0->m_clientObject, pairs[i].m_pProxy1->m_clientObject},
+             std::exchange(pairs[i].m_algorithm, nullptr)});
     }
+    PairCacheMembers::clear(cache);
 }
 
 void GhostImage::endDetach() const {
-    std::ranges::sort(detached_, {}, &Detached::place);
-}
-
-std::array<std::uintptr_t, 3> GhostImage::placeOf(const btPairCachingGhostObject& ghost,
-                                                  const btBroadphaseProxy& a,
-                                                  const btBroadphaseProxy& b) noexcept {
-    return {reinterpret_cast<std::uintptr_t>(&ghost),
-            reinterpret_cast<std::uintptr_t>(a.m_clientObject),
-            reinterpret_cast<std::uintptr_t>(b.m_clientObject)};
+    std::ranges::sort(detached_,
+                      [](const Detached& a, const Detached& b) { return a.isBefore(b.place); });
 }
 
 void GhostImage::restore(btPairCachingGhostObject& ghost, int pairCount,
@@ -69,8 +64,11 @@ void GhostImage::restore(btPairCachingGhostObject& ghost, int pairCount,
         const Pair& saved = pairs_[at_++];
         btBroadphaseProxy* const first = BroadphaseImage::proxyAt(broadphase, saved.first);
         btBroadphaseProxy* const second = BroadphaseImage::proxyAt(broadphase, saved.second);
-        const auto place = placeOf(ghost, *first, *second);
-        const auto found = std::ranges::lower_bound(detached_, place, {}, &Detached::place);
+        const std::array<const void*, 3> place{&ghost, first->m_clientObject,
+                                               second->m_clientObject};
+        const auto found = std::lower_bound(
+            detached_.begin(), detached_.end(), place,
+            [](const Detached& detached, const auto& at) { return detached.isBefore(at); });
         const bool isThere = found != detached_.end() && found->place == place;
         btCollisionAlgorithm* const algorithm =
             isThere ? std::exchange(found->algorithm, nullptr) : nullptr;
@@ -81,10 +79,10 @@ void GhostImage::restore(btPairCachingGhostObject& ghost, int pairCount,
     cache.setOverlapFilterCallback(filter);
 }
 
-void GhostImage::freeAlgorithmsOf(const void* client, btCollisionDispatcher& dispatcher) const {
-    const auto address = reinterpret_cast<std::uintptr_t>(client);
+void GhostImage::freeAlgorithmsOf(const ObjectNumbers& clients,
+                                  btCollisionDispatcher& dispatcher) const {
     for (Detached& detached : detached_) {
-        if (detached.place[1] == address || detached.place[2] == address) {
+        if (clients.has(detached.place[1]) || clients.has(detached.place[2])) {
             freeQuietly(std::exchange(detached.algorithm, nullptr), &dispatcher);
         }
     }

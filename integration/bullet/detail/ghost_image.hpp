@@ -9,9 +9,12 @@
 
 #include <BulletCollision/CollisionDispatch/btGhostObject.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
@@ -35,8 +38,8 @@ public:
     void restore(btPairCachingGhostObject& ghost, int pairCount,
                  const SpatialHashBroadphase& broadphase, const ContactImage& contacts,
                  btCollisionDispatcher& dispatcher) const;
-    /// Frees the algorithms that were detached of the pairs of that client.
-    void freeAlgorithmsOf(const void* client, btCollisionDispatcher& dispatcher) const;
+    /// Frees the algorithms that were detached of the pairs of these clients.
+    void freeAlgorithmsOf(const ObjectNumbers& clients, btCollisionDispatcher& dispatcher) const;
     /// Frees the algorithms of pairs that are not there any more.
     void endRestore(btCollisionDispatcher& dispatcher) const;
 
@@ -54,12 +57,13 @@ private:
     using Pair = BroadphaseImage::Pair;
     /// An algorithm, and where it was.
     struct Detached {
-        std::array<std::uintptr_t, 3> place;  // the ghost, and the two clients
+        std::array<const void*, 3> place;  // the ghost, and the two clients
         btCollisionAlgorithm* algorithm;
+
+        [[nodiscard]] bool isBefore(const std::array<const void*, 3>& other) const noexcept {
+            return std::ranges::lexicographical_compare(place, other, std::less<>());
+        }
     };
-    [[nodiscard]] static std::array<std::uintptr_t, 3> placeOf(
-        const btPairCachingGhostObject& ghost, const btBroadphaseProxy& a,
-        const btBroadphaseProxy& b) noexcept;
 
     std::vector<Pair> pairs_;
     mutable std::vector<Detached> detached_;  // by place, once all are

@@ -11,6 +11,7 @@
 #include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
@@ -79,7 +80,9 @@ void restoreJoint(btTypedConstraint& joint, ByteReader& from) {
     joint.internalSetAppliedImpulse(from.read<btScalar>());
     joint.setBreakingImpulseThreshold(from.read<btScalar>());
     joint.setEnabled(from.read<bool>());
-    joint.setOverrideNumSolverIterations(from.read<int>());
+    // So many that a stranger's bytes cannot make a step endless.
+    constexpr int kMostIterations = 1 << 16;
+    joint.setOverrideNumSolverIterations(std::min(from.read<int>(), kMostIterations));
     const OwnBytes own(joint);
     from.read(own.begin, own.count);
 }

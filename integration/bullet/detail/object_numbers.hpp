@@ -19,6 +19,13 @@ public:
     [[nodiscard]] std::uint32_t of(const void* object) const noexcept {
         return addresses_.find(keyOf(object));
     }
+    [[nodiscard]] bool has(const void* object) const noexcept {
+        return addresses_.contains(keyOf(object));
+    }
+    void clear() noexcept { addresses_.clear(); }
+    /// So that no add() takes memory until there are more.
+    void reserve(std::size_t count) { addresses_.reserve(count); }
+    [[nodiscard]] std::size_t memoryBytes() const noexcept { return addresses_.memoryBytes(); }
     [[nodiscard]] std::size_t size() const noexcept { return addresses_.size(); }
 
 private:

@@ -149,6 +149,10 @@ void WorldImage::makeRoom(btDiscreteDynamicsWorld& world,
                           SpatialHashBroadphase& ofBroadphase) const {
     broadphase.makeRoom(ofBroadphase);
     contacts.makeRoom();
+    const auto isReshaped = [](const SavedObject& saved) {
+        return saved.object->getCollisionShape() != saved.shape;
+    };
+    reshaped.reserve(static_cast<std::size_t>(std::ranges::count_if(objects, isReshaped)));
     std::size_t ghostPairs = 0;
     const btCollisionObjectArray& all = world.getCollisionObjectArray();
     for (int i = 0; i < all.size(); ++i) {
@@ -187,6 +191,7 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     ghosts.endDetach();
     broadphase.restore(ofBroadphase, &dispatcher);
     all.resizeNoInitialize(0);
+    reshaped.clear();
     for (const SavedObject& saved : objects) {
         btCollisionObject& object = *saved.object;
         const bool isOtherShape = object.getCollisionShape() != saved.shape;
@@ -196,9 +201,12 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
         object.setWorldArrayIndex(all.size());
         all.push_back(&object);
         if (isOtherShape) {
-            BroadphaseImage::freeAlgorithmsOf(ofBroadphase, &object, dispatcher);
-            ghosts.freeAlgorithmsOf(&object, dispatcher);
+            reshaped.add(&object);
         }
+    }
+    if (reshaped.size() > 0) {
+        BroadphaseImage::freeAlgorithmsOf(ofBroadphase, reshaped, dispatcher);
+        ghosts.freeAlgorithmsOf(reshaped, dispatcher);
     }
 
     contacts.beginRestore();

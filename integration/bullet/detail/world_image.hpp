@@ -88,7 +88,7 @@ struct WorldImage {
                (bodies.capacity() + actions.capacity() + pointers.capacity() +
                 addedObjects.capacity() + addedJoints.capacity() + addedActions.capacity()) *
                    sizeof(void*) +
-               present.memoryBytes() + brought.memoryBytes();
+               present.memoryBytes() + brought.memoryBytes() + reshaped.memoryBytes();
     }
 
 private:
@@ -112,7 +112,8 @@ private:
                                           const Returned& returned);
     [[nodiscard]] bool areDistinct() const;
     [[nodiscard]] bool areProxiesRight() const;
-    [[nodiscard]] std::vector<ShapePair> shapesOfPairs() const;
+    [[nodiscard]] bool areGhostsRight() const;
+    [[nodiscard]] std::vector<ObjectPair> objectsOfPairs() const;
     [[nodiscard]] std::size_t countFieldBytes(btDiscreteDynamicsWorld& world) const;
     [[nodiscard]] std::string findObjects(btDiscreteDynamicsWorld& world,
                                           const Returned& returned) const;
@@ -131,6 +132,7 @@ private:
     // Scratch of find(): the addresses of what is there and of what is handed over; and what is to be taken out.
     mutable FlatSet present;
     mutable FlatSet brought;
+    mutable ObjectNumbers reshaped;  // scratch of restore(): those that have other shapes now
     mutable bool areAllPresent = false;
     mutable std::vector<btCollisionObject*> addedObjects;
     mutable std::vector<btTypedConstraint*> addedJoints;

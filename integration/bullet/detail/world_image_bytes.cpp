@@ -66,11 +66,15 @@ std::string WorldImage::write(std::vector<std::byte>& bytes) const {
     to.write(static_cast<std::uint32_t>(objects.size()));
     const void* const* pointer = pointers.data();
     bool areAllThere = true;
+    const auto writeNumber = [&](const void* item, const ObjectNumbers& of) {
+        const std::uint32_t number = of.of(item);
+        to.write(number);
+        areAllThere = areAllThere && number != ObjectNumbers::kNone;
+    };
     const auto writeNumbers = [&](int count, const ObjectNumbers& of) {
         to.write(count);
         for (int i = 0; i < count; ++i) {
-            to.write(of.of(*pointer));
-            areAllThere = areAllThere && of.of(*pointer++) != ObjectNumbers::kNone;
+            writeNumber(*pointer++, of);
         }
     };
     for (const SavedObject& saved : objects) {
@@ -83,9 +87,6 @@ std::string WorldImage::write(std::vector<std::byte>& bytes) const {
         writeNumbers(saved.overlappingCount, numbers);
         to.write(saved.ghostPairCount);
     }
-    if (!areAllThere) {
-        return "An object ignores another one, or has a joint, that is not in the world.";
-    }
     to.write(static_cast<std::uint32_t>(bodies.size()));
     for (const btRigidBody* body : bodies) {
         to.write(numbers.of(static_cast<const btCollisionObject*>(body)));
@@ -93,13 +94,17 @@ std::string WorldImage::write(std::vector<std::byte>& bytes) const {
     to.write(static_cast<std::uint32_t>(joints.size()));
     for (const SavedJoint& saved : joints) {
         to.write(saved.type);
-        to.write(numbers.of(static_cast<const btCollisionObject*>(saved.a)));
-        to.write(numbers.of(static_cast<const btCollisionObject*>(saved.b)));
+        writeNumber(static_cast<const btCollisionObject*>(saved.a), numbers);
+        writeNumber(static_cast<const btCollisionObject*>(saved.b), numbers);
     }
     to.write(static_cast<std::uint32_t>(actions.size()));
     for (btActionInterface* action : actions) {
         const btCollisionObject* const ghost = asCharacter(action)->getGhostObject();
-        to.write(numbers.of(ghost));
+        writeNumber(ghost, numbers);
+    }
+    if (!areAllThere || !broadphase.areClientsAmong(numbers)) {
+        return "Something is not in the world: an object that another one ignores, a joint of a "
+               "body, a body of a joint, the ghost of a character, or the object of a proxy.";
     }
     broadphase.write(to, numbers);
     ghosts.write(to);
@@ -142,10 +147,10 @@ std::string WorldImage::read(std::span<const std::byte> bytes, btDiscreteDynamic
     if (!fault.empty()) {
         return "The bytes of a snapshot of a world cannot be taken: " + fault;
     }
-    if (!ghosts.read(from, broadphase) || !areProxiesRight()) {
+    if (!ghosts.read(from, broadphase) || !areProxiesRight() || !areGhostsRight()) {
         return contradiction("proxies");
     }
-    if (!contacts.read(from, numbered, shapesOfPairs())) {
+    if (!contacts.read(from, numbered, objectsOfPairs())) {
         return contradiction("contacts");
     }
     if (from.left() != countFieldBytes(world)) {
@@ -230,9 +235,9 @@ std::string WorldImage::takeNumbers(ByteReader& from, std::span<const std::uint3
         if ((!isBody && saved.jointCount > 0) || (!isGhost && saved.overlappingCount > 0)) {
             return contradiction("objects");
         }
-        const auto take = [&](int count, bool areObjects) {
+        const auto take = [&](int count, bool areObjects, std::size_t most) {
             for (int i = 0; i < count; ++i, ++at) {
-                if (areObjects && numbers[at] > objects.size()) {
+                if (areObjects && numbers[at] > most) {
                     return false;
                 }
                 pointers.push_back(!areObjects                    ? nullptr
@@ -241,9 +246,11 @@ std::string WorldImage::takeNumbers(ByteReader& from, std::span<const std::uint3
             }
             return true;
         };
-        const bool isSound = take(saved.ignoredCount, true);
+        // Only the body that stands for the world, which has the last number, may be no object of it.
+        const bool isSound = take(saved.ignoredCount, true, objects.size());
         const std::size_t firstJoint = at;
-        if (!isSound || !take(saved.jointCount, false) || !take(saved.overlappingCount, true)) {
+        if (!isSound || !take(saved.jointCount, false, 0) ||
+            !take(saved.overlappingCount, true, objects.size() - 1)) {
             return contradiction("objects");
         }
         for (int i = 0; i < saved.jointCount; ++i) {
@@ -252,13 +259,15 @@ std::string WorldImage::takeNumbers(ByteReader& from, std::span<const std::uint3
         }
     }
     const auto bodyCount = from.read<std::uint32_t>();
+    ObjectNumbers known;
     for (std::uint32_t i = 0; i < bodyCount && !from.isTorn(); ++i) {
         const auto number = from.read<std::uint32_t>();
         btRigidBody* const body =
             number < objects.size() ? btRigidBody::upcast(objects[number].object) : nullptr;
-        if (body == nullptr || std::find(bodies.begin(), bodies.end(), body) != bodies.end()) {
+        if (body == nullptr || known.has(body)) {
             return contradiction("bodies");
         }
+        known.add(body);
         bodies.push_back(body);
     }
     return {};
@@ -270,6 +279,7 @@ std::string WorldImage::readJoints(ByteReader& from, btDiscreteDynamicsWorld& wo
     const auto& all = WorldMembers::joints(world);
     std::vector<char> isTaken(static_cast<std::size_t>(all.size()), 0);
     HandedOver<btTypedConstraint> handedOver(returned.joints);
+    int begin = 0;  // of the search: mostly they are in the same order
     for (std::uint32_t i = 0; i < count; ++i) {
         const int type = from.read<int>();
         const auto a = from.read<std::uint32_t>();
@@ -286,9 +296,11 @@ std::string WorldImage::readJoints(ByteReader& from, btDiscreteDynamicsWorld& wo
         };
         btTypedConstraint* found = nullptr;
         for (int k = 0; k < all.size() && found == nullptr; ++k) {
-            if (isTaken[static_cast<std::size_t>(k)] == 0 && isBetween(*all[k])) {
-                isTaken[static_cast<std::size_t>(k)] = 1;
-                found = all[k];
+            const int at = (begin + k) % all.size();
+            if (isTaken[static_cast<std::size_t>(at)] == 0 && isBetween(*all[at])) {
+                isTaken[static_cast<std::size_t>(at)] = 1;
+                found = all[at];
+                begin = at + 1;
             }
         }
         found = found != nullptr ? found : handedOver.next();
@@ -355,16 +367,60 @@ bool WorldImage::areProxiesRight() const {
     return ghostPairs == ghosts.pairs().size();
 }
 
-std::vector<ShapePair> WorldImage::shapesOfPairs() const {
-    std::vector<ShapePair> shapes;
+// What a ghost overlaps is a pair of the broadphase; and so are the pairs that it keeps, each once, of which it is
+// one of the two. Bullet takes them out with those.
+bool WorldImage::areGhostsRight() const {
+    FlatSet paired;
+    const auto keyOf = [](std::uint32_t a, std::uint32_t b) {
+        return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+    };
+    for (const BroadphaseImage::Pair& pair : broadphase.pairs()) {
+        paired.findOrInsert(keyOf(pair.first, pair.second));
+    }
+    ObjectNumbers numbers;
+    for (const SavedObject& saved : objects) {
+        numbers.add(saved.object);
+    }
+    const void* const* pointer = pointers.data();
+    std::span<const BroadphaseImage::Pair> ghostPairs = ghosts.pairs();
+    FlatSet met;
+    for (const SavedObject& saved : objects) {
+        pointer += saved.ignoredCount + saved.jointCount;
+        const auto isNewPair = [&](std::uint32_t other) {
+            const std::uint64_t key = keyOf(saved.proxyIndex, other);
+            const bool isNew = !met.contains(key);
+            met.findOrInsert(key);
+            return isNew && paired.contains(key);
+        };
+        met.clear();
+        for (int i = 0; i < saved.overlappingCount; ++i, ++pointer) {
+            if (!isNewPair(objects[numbers.of(*pointer)].proxyIndex)) {
+                return false;
+            }
+        }
+        met.clear();
+        for (int i = 0; i < saved.ghostPairCount; ++i) {
+            const BroadphaseImage::Pair& pair = ghostPairs[static_cast<std::size_t>(i)];
+            const bool isFirst = pair.first == saved.proxyIndex;
+            if ((!isFirst && pair.second != saved.proxyIndex) ||
+                !isNewPair(isFirst ? pair.second : pair.first)) {
+                return false;
+            }
+        }
+        ghostPairs = ghostPairs.subspan(static_cast<std::size_t>(saved.ghostPairCount));
+    }
+    return true;
+}
+
+std::vector<ObjectPair> WorldImage::objectsOfPairs() const {
+    std::vector<ObjectPair> all;
     for (const std::span<const BroadphaseImage::Pair> pairs :
          {broadphase.pairs(), ghosts.pairs()}) {
         for (const BroadphaseImage::Pair& pair : pairs) {
-            shapes.push_back({broadphase.clientOf(pair.first)->getCollisionShape(),
-                              broadphase.clientOf(pair.second)->getCollisionShape()});
+            all.push_back({broadphase.clientOf(pair.first), broadphase.clientOf(pair.second)});
         }
     }
-    return shapes;
+    return all;
 }
 
 std::size_t WorldImage::countFieldBytes(btDiscreteDynamicsWorld& world) const {

@@ -56,6 +56,9 @@ std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
     if (!fault.empty()) {
         return fault;
     }
+    if (asCollisionDispatcher(world.getDispatcher()) == nullptr) {
+        return "The world's dispatcher is not a btCollisionDispatcher.";
+    }
     if (asSequentialImpulseSolver(world.getConstraintSolver()) == nullptr) {
         return "The world's solver is not a btSequentialImpulseConstraintSolver.";
     }
@@ -100,6 +103,10 @@ void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectA
                          std::vector<Item*>& added) const {
     added.clear();
     present.clear();
+    brought.clear();
+    for (Item* const item : returned) {
+        brought.findOrInsert(keyOf(item));
+    }
     bool areSame = saved.size() == static_cast<std::size_t>(all.size());
     for (int i = 0; areSame && i < all.size(); ++i) {
         areSame = addressOf(saved[static_cast<std::size_t>(i)]) == all[i];
@@ -119,10 +126,6 @@ void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectA
     present.clear();
     for (int i = 0; i < all.size(); ++i) {
         present.findOrInsert(keyOf(all[i]));
-    }
-    brought.clear();
-    for (Item* const item : returned) {
-        brought.findOrInsert(keyOf(item));
     }
 }
 
@@ -153,10 +156,14 @@ std::string WorldImage::findObjects(btDiscreteDynamicsWorld& world,
         if (!isThere && proxy != nullptr) {
             return sentence("is handed over, but it is in another world.");
         }
-        if (saved.object->getInternalType() != saved.type ||
-            (isThere && proxy->m_uniqueId != saved.uniqueId &&
-             saved.object->getCollisionShape() != saved.shape)) {
+        if (saved.object->getInternalType() != saved.type) {
             return sentence("was removed from the world since, and another is at its address.");
+        }
+        if (isThere && proxy->m_uniqueId != saved.uniqueId &&
+            saved.object->getCollisionShape() != saved.shape && !isHandedOver(saved.object)) {
+            return sentence(
+                "was removed from the world since, and one with another shape was added at its "
+                "address. If it is the same, hand it over as Returned::objects.");
         }
         if (shapeRevisionOf(saved.shape) != saved.shapeRevision) {
             return sentence("has a compound shape that has changed since.");
