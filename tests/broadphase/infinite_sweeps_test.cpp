@@ -35,9 +35,9 @@ protected:
         return way;
     }
     Aabb<Scalar> anyBox() {
-        constexpr Scalar kInfinity = std::numeric_limits<Scalar>::infinity();
-        const std::array<Scalar, 8> rare{-kInfinity, -kFar,    -kFar / 2, -2,
-                                         3,          kFar / 2, kFar,      kInfinity};
+        constexpr Scalar kEndless = std::numeric_limits<Scalar>::infinity();
+        const std::array<Scalar, 8> rare{-kEndless, -kFar,    -kFar / 2, -2,
+                                         3,         kFar / 2, kFar,      kEndless};
         Aabb<Scalar> box;
         for (int axis = 0; axis < 3; ++axis) {
             std::array<Scalar, 2> ends{};
