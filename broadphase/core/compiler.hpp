@@ -73,7 +73,7 @@
 #define HASHPHASE_LIFETIME_BOUND maybe_unused
 #endif
 
-#if defined(__SSE2__) || (defined(_M_X64) && !defined(_M_ARM64EC)) || \
+#if defined(__SSE2__) || (defined(_M_X64) && !defined(_M_ARM64EC)) ||                              \
     (defined(_M_IX86_FP) && _M_IX86_FP >= 2)
 #define HASHPHASE_HAS_SSE2 1
 #else
@@ -213,14 +213,21 @@ template <std::floating_point Scalar>
     return HASHPHASE_OVERLOOKS_NAN ? isNan(a) || isNan(b) : std::isunordered(a, b);
 }
 
+/// Where an object of a class with virtual members says which one it has. Objects of one class mostly have equal ones,
+/// those of two classes never.
+template <class Object>
+[[nodiscard]] const void* const* virtualTableOf(const Object& object) noexcept {
+    const void* const* virtualTable = nullptr;
+    std::memcpy(&virtualTable, static_cast<const void*>(&object), sizeof(virtualTable));
+    return virtualTable;
+}
+
 /// Whether dynamic_cast may ask an object, which has virtual functions: its class, and this code, were
 /// compiled with RTTI.
 template <class Object>
 [[nodiscard]] bool knowsItsType([[maybe_unused]] const Object& object) noexcept {
 #if HASHPHASE_HAS_RTTI
-    const void* const* virtualTable = nullptr;
-    std::memcpy(&virtualTable, static_cast<const void*>(&object), sizeof(virtualTable));
-    return virtualTable[-1] != nullptr;
+    return virtualTableOf(object)[-1] != nullptr;
 #else
     return false;
 #endif

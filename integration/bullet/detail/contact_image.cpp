@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionDispatch/btHashedSimplePairCache.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
+#include <algorithm>
 #include <sstream>
 
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
@@ -24,7 +25,7 @@ public:
             return;
         }
         const AlgorithmKind kind = kindOf(a, b);
-        if (!isOfKind(*algorithm, kind)) {
+        if (!image_.isOfKind(*algorithm, kind)) {
             image_.fault_ = "A collision algorithm is not one of Bullet's default ones.";
             return;
         }
@@ -76,6 +77,20 @@ public:
 private:
     ContactImage& image_;
 };
+
+// To compare names of classes takes as long as all else that is done about a pair.
+bool ContactImage::isOfKind(const btCollisionAlgorithm& algorithm, AlgorithmKind kind) {
+    const void* const table = virtualTableOf(algorithm);
+    std::vector<const void*>& known = knownTables_[static_cast<std::size_t>(kind)];
+    if (std::ranges::find(known, table) != known.end()) {
+        return true;
+    }
+    const bool isKnown = detail::isOfKind(algorithm, kind);
+    if (isKnown) {
+        known.push_back(table);
+    }
+    return isKnown;
+}
 
 void ContactImage::begin() {
     owned_.clear();

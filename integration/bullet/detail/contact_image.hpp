@@ -10,6 +10,7 @@
 
 #include <broadphase/core/byte_stream.hpp>
 #include <broadphase/core/roomy_list.hpp>
+#include <integration/bullet/detail/bullet_classes.hpp>
 #include <integration/bullet/detail/object_numbers.hpp>
 #include <integration/bullet/precision.hpp>
 
@@ -18,6 +19,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -90,6 +92,7 @@ private:
     class Builder;
     class Checker;
 
+    [[nodiscard]] bool isOfKind(const btCollisionAlgorithm& algorithm, AlgorithmKind kind);
     static void fill(btPersistentManifold& manifold, const Head& head,
                      const btManifoldPoint* points);
 
@@ -104,6 +107,7 @@ private:
 
     // Scratch.
     std::string fault_;
+    std::array<std::vector<const void*>, 3> knownTables_;  // of algorithms of each kind: few
     btManifoldArray found_;
     mutable std::size_t at_ = 0;                            // in owned_
     mutable std::vector<btPersistentManifold*> manifolds_;  // as heads_; null where none was made
