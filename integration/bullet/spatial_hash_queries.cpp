@@ -118,7 +118,7 @@ private:
 };
 
 // Rays that a thread takes at a time.
-constexpr std::size_t kGrain = 32;
+constexpr std::size_t kRaysAtOnce = 32;
 
 }  // namespace
 
@@ -161,7 +161,7 @@ bool SpatialHashBroadphase::endsRayTest(const btVector3& from, const btVector3& 
 
 void SpatialHashBroadphase::rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor) {
     grid_.expectRays(rays.size());
-    parallelFor(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(rays.size(), kRaysAtOnce, [&](std::size_t begin, std::size_t end) {
         for (const BroadphaseRay& ray : rays.subspan(begin, end - begin)) {
             HASHPHASE_ASSERT(ray.callback != nullptr, "Each ray has a callback.");
             rayTest(ray.from, ray.to, *ray.callback, ray.castMin, ray.castMax);
@@ -182,7 +182,7 @@ QueryCost SpatialHashBroadphase::closestRay(const btVector3& from, const btVecto
 void SpatialHashBroadphase::closestRays(std::span<const ClosestRay> rays,
                                         ParallelFor parallelFor) const {
     grid_.expectRays(rays.size());
-    parallelFor(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelFor(rays.size(), kRaysAtOnce, [&](std::size_t begin, std::size_t end) {
         for (const ClosestRay& ray : rays.subspan(begin, end - begin)) {
             HASHPHASE_ASSERT(ray.callback != nullptr, "Each ray has a callback.");
             closestRay(ray.from, ray.to, *ray.callback);
