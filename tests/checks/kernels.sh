@@ -8,12 +8,17 @@
 tools+=(aarch64-linux-gnu-g++:g++-aarch64-linux-gnu)
 
 check_kernels() {
-    local source passed=0 failed=0
+    local source compiler passed=0 failed=0 compilers=()
+    # All at a time.
     for source in simd/kernels_neon simd/kernels_scalar simd/dispatch pairs/pair_state; do
-        if aarch64-linux-gnu-g++ -std=c++20 -O3 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror \
+        aarch64-linux-gnu-g++ -std=c++20 -O3 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror \
             -DHASHPHASE_HAS_NEON_KERNELS=1 -DHASHPHASE_ENABLE_ASSERTS=1 -DHASHPHASE_SHARED=0 \
             -ffp-contract=off -fno-trapping-math -isystem /usr/include/eigen3 -I"$root" \
-            -c "$root/broadphase/$source.cpp" -o /dev/null; then
+            -c "$root/broadphase/$source.cpp" -o /dev/null &
+        compilers+=($!)
+    done
+    for compiler in "${compilers[@]}"; do
+        if wait "$compiler"; then
             passed=$((passed + 1))
         else
             failed=$((failed + 1))
