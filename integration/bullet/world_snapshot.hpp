@@ -91,12 +91,13 @@ public:
                                       const Returned& returned = {}) const;
 
     /// Replaces what `bytes` held by the snapshot, to send or to keep. They begin with a version and a checksum.
-    /// Returns an empty string on success. Otherwise a sentence, and leaves `bytes` empty: where an object ignores
-    /// another one, or has a joint, that is not in the world; and where algorithms of removed pairs wait to be freed,
-    /// until the next step. Numbers are as this processor, this Bullet and this compiler have them. Settings of the
-    /// solver and of collision detection are not written: both sides must have equal ones, and an equal
-    /// SpatialHashConfig, but for parallelFor. A world restored from bytes writes the same bytes again. Two worlds in
-    /// equal states may write different ones: the bytes of joints hold their padding.
+    /// Returns an empty string on success. Otherwise a sentence, and leaves `bytes` empty: where something is not in
+    /// the world that an object ignores, that a joint or a character links, or that a proxy stands for; and where
+    /// algorithms of removed pairs wait to be freed, until the next step. Numbers are as this processor, this Bullet
+    /// and this compiler have them. Settings of the solver and of collision detection are not written: both sides
+    /// must have equal ones, and an equal SpatialHashConfig, but for parallelFor. A world restored from bytes writes
+    /// the same bytes again. Two worlds in equal states may write different ones: the bytes of joints hold their
+    /// padding.
     /// Cost: O(what is saved). In a world in contact most bytes are contact points.
     [[nodiscard]] std::string write(std::vector<std::byte>& bytes) const;
 
@@ -109,8 +110,8 @@ public:
     /// the same `returned` puts the world to what was read. With equal inputs, the steps that follow give the same
     /// bits as the writer's. Damaged bytes are refused. Forged ones may be read: then objects may be anywhere, and
     /// nothing worse comes of it. Authenticate the sender.
-    /// Cost: O(what is saved), finding all pairs from scratch, and comparing bodies, joints and characters each with
-    /// all others of their kind.
+    /// Cost: O(what is saved), and finding all pairs from scratch. Joints that the world lists in another order, and
+    /// characters, are each looked for among all.
     [[nodiscard]] std::string read(std::span<const std::byte> bytes, btDiscreteDynamicsWorld& world,
                                    const SpatialHashBroadphase& broadphase,
                                    const Returned& returned = {});
