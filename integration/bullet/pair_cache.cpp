@@ -63,8 +63,7 @@ namespace {
 /// What a cache does without a callback.
 struct GroupsAndMasks final : btOverlapFilterCallback {
     bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
-        return (a->m_collisionFilterGroup & b->m_collisionFilterMask) != 0 &&
-               (b->m_collisionFilterGroup & a->m_collisionFilterMask) != 0;
+        return PairCache::doGroupsAccept(*a, *b);
     }
 };
 

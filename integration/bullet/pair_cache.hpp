@@ -237,8 +237,13 @@ public:
             const detail::QueryScope scope(this);
             return filter_->needBroadphaseCollision(proxy0, proxy1);
         }
-        return (proxy0->m_collisionFilterGroup & proxy1->m_collisionFilterMask) != 0 &&
-               (proxy1->m_collisionFilterGroup & proxy0->m_collisionFilterMask) != 0;
+        return doGroupsAccept(*proxy0, *proxy1);
+    }
+    /// Whether the two may pair by their groups and masks, both ways.
+    [[nodiscard]] static bool doGroupsAccept(const btBroadphaseProxy& a,
+                                             const btBroadphaseProxy& b) noexcept {
+        return (a.m_collisionFilterGroup & b.m_collisionFilterMask) != 0 &&
+               (b.m_collisionFilterGroup & a.m_collisionFilterMask) != 0;
     }
     /// The callback that was set. Where the broadphase may say that two are no pair, and none was set, one that
     /// asks groups and masks: Bullet's casts of fast bodies call needsBroadphaseCollision() only if there is one.

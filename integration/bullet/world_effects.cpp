@@ -3,6 +3,7 @@
 
 #include <broadphase/diagnostics.hpp>
 #include <integration/bullet/detail/living_broadphase.hpp>
+#include <integration/bullet/pair_cache.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 #include <integration/bullet/world_cost.hpp>
 
@@ -171,8 +172,7 @@ bool WorldConfigurator::Filter::needBroadphaseCollision(btBroadphaseProxy* a,
     if (former != nullptr) {
         return former->needBroadphaseCollision(a, b);
     }
-    return (a->m_collisionFilterGroup & b->m_collisionFilterMask) != 0 &&
-           (b->m_collisionFilterGroup & a->m_collisionFilterMask) != 0;
+    return PairCache::doGroupsAccept(*a, *b);
 }
 
 void WorldConfigurator::setFilter() {
