@@ -17,8 +17,29 @@
 namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
-// Fetched while others are copied.
-constexpr int kObjectsAhead = 2;
+// Fetched while others are copied, or looked at: whole objects, and lines of the cache.
+constexpr std::size_t kObjectsAhead = 2;
+constexpr std::size_t kLinesAhead = 8;
+
+// Most objects are bodies.
+void prefetchBody(const btCollisionObject& object) {
+    prefetchAll(reinterpret_cast<const btRigidBody&>(object));
+}
+
+// What is looked at of a pair: its algorithm, and the shapes of its clients.
+void prefetchAhead(std::span<const btBroadphasePair> pairs, std::size_t i) {
+    const btBroadphasePair& far = pairs[std::min(i + 2 * kLinesAhead, pairs.size() - 1)];
+    prefetch(far.m_algorithm);
+    prefetch(far.m_pProxy0);
+    prefetch(far.m_pProxy1);
+    const btBroadphasePair& near = pairs[std::min(i + kLinesAhead, pairs.size() - 1)];
+    for (const btBroadphaseProxy* const proxy : {near.m_pProxy0, near.m_pProxy1}) {
+        auto* const client = static_cast<btCollisionObject*>(proxy->m_clientObject);
+        if (client != nullptr) {
+            prefetch(&ObjectMembers::shape(*client));
+        }
+    }
+}
 
 btCollisionDispatcher& dispatcherOf(btDiscreteDynamicsWorld& world) {
     return static_cast<btCollisionDispatcher&>(*world.getDispatcher());
@@ -88,17 +109,17 @@ std::string WorldImage::save(btDiscreteDynamicsWorld& world,
     fields.write(std::uint64_t{solverOf(world).getRandSeed()});
 
     // Contacts first of pairs: in this order they are restored.
-    for (const btBroadphasePair& pair : BroadphaseImage::pairsOf(ofBroadphase)) {
-        contacts.save(pair);
+    const std::span<const btBroadphasePair> pairs = BroadphaseImage::pairsOf(ofBroadphase);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        prefetchAhead(pairs, i);
+        contacts.save(pairs[i]);
     }
     for (std::size_t i = 0; i < BroadphaseImage::retiredCount(ofBroadphase); ++i) {
         contacts.saveRetired(*BroadphaseImage::retired(ofBroadphase, i));
     }
     btCollisionObjectArray& all = world.getCollisionObjectArray();
     for (int i = 0; i < all.size(); ++i) {
-        if (i + kObjectsAhead < all.size()) {
-            prefetchAll(static_cast<const btRigidBody&>(*all[i + kObjectsAhead]));
-        }
+        prefetchBody(*all[std::min(i + static_cast<int>(kObjectsAhead), all.size() - 1)]);
         btCollisionObject& object = *all[i];
         const btBroadphaseProxy* const proxy = object.getBroadphaseHandle();
         SavedObject saved{&object,
@@ -192,7 +213,10 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     broadphase.restore(ofBroadphase, &dispatcher);
     all.resizeNoInitialize(0);
     reshaped.clear();
-    for (const SavedObject& saved : objects) {
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        prefetch(
+            &ObjectMembers::shape(*objects[std::min(i + kLinesAhead, objects.size() - 1)].object));
+        const SavedObject& saved = objects[i];
         btCollisionObject& object = *saved.object;
         const bool isOtherShape = object.getCollisionShape() != saved.shape;
         ObjectMembers::shape(object) = saved.shape;
@@ -210,8 +234,10 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     }
 
     contacts.beginRestore();
-    for (btBroadphasePair& pair : BroadphaseImage::pairsOf(ofBroadphase)) {
-        pair.m_algorithm = contacts.restore(pair.m_algorithm, pair, dispatcher);
+    const std::span<btBroadphasePair> pairs = BroadphaseImage::pairsOf(ofBroadphase);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        prefetchAhead(pairs, i);
+        pairs[i].m_algorithm = contacts.restore(pairs[i].m_algorithm, pairs[i], dispatcher);
     }
     for (std::size_t i = 0; i < BroadphaseImage::retiredCount(ofBroadphase); ++i) {
         BroadphaseImage::retired(ofBroadphase, i) = contacts.restoreRetired(dispatcher);
@@ -234,7 +260,9 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     restoreMembers(world, reader);
     solverOf(world).setRandSeed(static_cast<unsigned long>(reader.read<std::uint64_t>()));
     const void* const* pointer = pointers.data();
-    for (const SavedObject& saved : objects) {
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        prefetchBody(*objects[std::min(i + kObjectsAhead, objects.size() - 1)].object);
+        const SavedObject& saved = objects[i];
         btCollisionObject& object = *saved.object;
         restoreMembers(object, reader);
         restorePointers(ObjectMembers::ignored(object), saved.ignoredCount, pointer);
