@@ -134,7 +134,8 @@ public:
 
     // --- Scene -----------------------------------------------------------------------------------
 
-    /// What bodies stand on: add triangles here. Needs terrain.
+    /// What bodies stand on: add triangles here. Needs terrain. Bodies that sleep on what is changed or removed
+    /// sleep on: a ChangedGround tells who stands there, and setPosition() to where they are wakes them.
     [[nodiscard]] Terrain<Scalar>& ground();
 
     /// Set view, interest, zones and colours here, and read what was found. Bodies beyond the interest radius

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 
 #include <integration/effects/simulation.hpp>
+#include <integration/terrain/changed_ground.hpp>
 #include <tests/integration/effects/small_scene.hpp>
 
 #include <gtest/gtest.h>
@@ -240,6 +241,34 @@ TEST(Simulation, PutsTheSlowToSleepUntilSomebodyHitsThem) {
     EXPECT_FALSE(simulation.isAsleep(slow));
     EXPECT_EQ(sum[SceneCounter::wokeUp], 1U);
     EXPECT_GT(simulation.position(slow).x(), 1);
+}
+
+TEST(Simulation, TellsWhoSleepsOnChangedGround) {
+    SceneEffects effects =
+        declared({Effect::motion, Effect::terrain, Effect::sleeping, Effect::picking});
+    effects.sleeping->slowBelow = 0.1;
+    Simulation<float> simulation(effects);
+    Terrain<float>& ground = simulation.ground();
+    const auto tileAt = [](float x, float y) {
+        return std::array{Point(x - 9, y, -9), Point(x + 9, y, -9), Point(x, y, 9)};
+    };
+    const AddedTriangles left = ground.add(tileAt(-10, 0));
+    ground.add(tileAt(10, 0));
+    const BodyId falls = simulation.add({.position = {-10, 1, 0}});
+    const BodyId stays = simulation.add({.position = {10, 1, 0}});
+    ChangedGround<float> changed(ground);
+    run(simulation, 60);
+    ASSERT_TRUE(simulation.isAsleep(falls) && simulation.isAsleep(stays));
+    ground.replace(left.first, tileAt(-10, -2));
+    std::vector<ProxyId> standing;
+    changed.findStanding(simulation.grid(), 0.05F, standing);
+    ASSERT_EQ(standing.size(), 1U);
+    EXPECT_EQ(simulation.bodyOf(standing[0]), falls);
+    simulation.setPosition(falls, simulation.position(falls));
+    run(simulation, 1);
+    EXPECT_FALSE(simulation.isAsleep(falls));
+    EXPECT_EQ(simulation.position(falls), Point(-10, -1, 0));
+    EXPECT_TRUE(simulation.isAsleep(stays));
 }
 
 // --- What is easily missed -------------------------------------------------------------------------
