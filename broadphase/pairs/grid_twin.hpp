@@ -15,6 +15,10 @@ struct Side {
     Motions* motions;
 };
 
+// For Clang before 17, which finds none for such a class.
+template <class Store, class PairState, class Motions>
+Side(Store*, PairState*, Motions*) -> Side<Store, PairState, Motions>;
+
 /// The same once more.
 template <class Scalar>
 struct GridTwin {
