@@ -100,8 +100,7 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, CornersOf cornersOf) {
     }
     const Plan plan = prepare(first, count, cornersOf);
     const std::size_t limit = std::max<std::size_t>(size(), first + count);
-    const Point nan = detail::nanPoint<Scalar>();
-    triangles_.resize(limit, groundTriangle({nan, nan, nan}));
+    triangles_.resize(limit, detail::noTriangle<Scalar>());
     proxies_.resize(limit);
     free_.take(first, plan.triangles.count);
     write(plan, cornersOf);
@@ -208,8 +207,7 @@ void Terrain<Scalar>::unsetTriangle(std::uint32_t number) {
     triangleOfProxy_[id.index] = kNone;
     grid_->remove(id);
     proxies_[number] = {};
-    const Point nan = detail::nanPoint<Scalar>();
-    triangles_[number] = groundTriangle({nan, nan, nan});
+    triangles_[number] = detail::noTriangle<Scalar>();
 }
 
 template <class Scalar>

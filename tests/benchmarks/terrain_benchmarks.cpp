@@ -8,15 +8,10 @@
 //           points of all triangles around say, in long double.
 
 #include <demos/scenes/random.hpp>
-#include <demos/scenes/terrain.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/terrain/terrain.hpp>
+#include <tests/benchmarks/hill_ground.hpp>
 #include <tests/benchmarks/peers/peers.hpp>
-#include <tests/support/terrain_oracle.hpp>
-
-#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
-#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
-#include <btBulletCollisionCommon.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,80 +24,6 @@ namespace {
 constexpr float kAbove = 30;  // [m], where all ask from
 constexpr float kBelow = -5;  // [m], where rays and sweeps end
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-constexpr double kTolerance = 0.01;  // [m]
-
-// --- The hills -------------------------------------------------------------------------------------
-
-/// Hills over a square: 160 x 160 quads of 2.5 m, in two triangles each.
-class HillMesh {
-public:
-    static constexpr std::uint32_t kQuads = 160;  // a side
-    static constexpr float kEdge = 2.5F;          // [m]
-    static constexpr float kHalf = 0.5F * kQuads * kEdge;
-
-    explicit HillMesh(std::uint64_t seed) {
-        const demos::Terrain hills(seed);
-        for (std::uint32_t k = 0; k <= kQuads; ++k) {
-            for (std::uint32_t i = 0; i <= kQuads; ++i) {
-                const float x = static_cast<float>(i) * kEdge - kHalf;
-                const float z = static_cast<float>(k) * kEdge - kHalf;
-                vertices_.emplace_back(x, hills.height(x, z), z);
-            }
-        }
-        for (std::uint32_t k = 0; k < kQuads; ++k) {
-            for (std::uint32_t i = 0; i < kQuads; ++i) {
-                // Along the diagonal that a heightfield of Bullet's takes.
-                const std::uint32_t a = k * (kQuads + 1) + i;
-                const std::uint32_t b = a + 1;
-                const std::uint32_t c = a + kQuads + 1;
-                indices_.insert(indices_.end(), {a, c, b, b, c, c + 1});
-            }
-        }
-    }
-
-    [[nodiscard]] const std::vector<Vector3<float>>& vertices() const noexcept { return vertices_; }
-    [[nodiscard]] const std::vector<std::uint32_t>& indices() const noexcept { return indices_; }
-
-    /// How far `height` is from what is exact for a sphere, radius 0 for the surface [m].
-    // On hills without overhangs, a sphere rests where the nearest point of all is the radius away.
-    [[nodiscard]] double error(const Vector3<float>& center, float radius, float height) const {
-        const auto quadAt = [](float x) {
-            const float quad = std::floor((x + kHalf) / kEdge);
-            return static_cast<std::uint32_t>(
-                std::clamp(quad, 0.0F, static_cast<float>(kQuads - 1)));
-        };
-        const test::RealPoint at(static_cast<test::Real>(center[0]),
-                                 static_cast<test::Real>(height),
-                                 static_cast<test::Real>(center[2]));
-        test::Real nearest = std::numeric_limits<test::Real>::infinity();
-        for (std::uint32_t k = quadAt(center[2] - radius); k <= quadAt(center[2] + radius); ++k) {
-            for (std::uint32_t i = quadAt(center[0] - radius); i <= quadAt(center[0] + radius);
-                 ++i) {
-                for (const std::uint32_t half : {0U, 1U}) {
-                    const test::RealTriangle corners = triangle(2 * (k * kQuads + i) + half);
-                    const auto surface = test::surfaceOf(corners, at);
-                    if (surface.claim != test::Claim::no && surface.height > at[1] + kTolerance) {
-                        return static_cast<double>(surface.height - at[1]);  // sunk in
-                    }
-                    nearest = std::min(nearest, (test::nearestPoint(corners, at) - at).norm());
-                }
-            }
-        }
-        return static_cast<double>(std::abs(nearest - static_cast<test::Real>(radius)));
-    }
-
-private:
-    [[nodiscard]] test::RealTriangle triangle(std::uint32_t number) const {
-        test::RealTriangle corners;
-        for (std::size_t i = 0; i < 3; ++i) {
-            corners[i] = vertices_[indices_[3 * number + i]].cast<test::Real>();
-        }
-        return corners;
-    }
-
-    std::vector<Vector3<float>> vertices_;
-    std::vector<std::uint32_t> indices_;
-};
 
 enum class GroundQuestion : std::uint8_t { surface, rest };
 
@@ -127,7 +48,7 @@ public:
             if (!std::isnan(heights_[i])) {
                 const double error =
                     spheres_.mesh.error(spheres_.centers[i], spheres_.radii[i], heights_[i]);
-                answers.push_back(answerOf(i, error <= kTolerance ? 1 : 2));
+                answers.push_back(answerOf(i, error <= HillMesh::kTolerance ? 1 : 2));
             }
         }
     }
@@ -185,7 +106,8 @@ private:
 template <class Ground>
 class BulletGround final : public GroundRunner {
 public:
-    explicit BulletGround(const Spheres& spheres) : GroundRunner(spheres), ground_(spheres) {}
+    explicit BulletGround(const Spheres& spheres, const auto&... ofGround)
+        : GroundRunner(spheres), ground_(ofGround...) {}
 
     void run() override {
         for (std::size_t i = 0; i < heights_.size(); ++i) {
@@ -200,63 +122,11 @@ private:
     Ground ground_;
 };
 
-/// Of a ray at a shape.
-struct ClosestTriangle : btTriangleRaycastCallback {
-    using btTriangleRaycastCallback::btTriangleRaycastCallback;
-    btScalar reportHit(const btVector3& /*normal*/, btScalar fraction, int /*part*/,
-                       int /*index*/) override {
-        return fraction;
-    }
-};
-
-class HeightfieldGround {
-public:
-    explicit HeightfieldGround(const Spheres& spheres) {
-        for (const Vector3<float>& vertex : spheres.mesh.vertices()) {
-            ground_.push_back(vertex[1]);
-        }
-        constexpr int side = HillMesh::kQuads + 1;
-        // From -20 to 20, so that its middle is at 0.
-        const float* heights = ground_.data();
-        shape_.emplace(side, side, heights, btScalar(-20), btScalar(20), 1, false);
-        shape_->setLocalScaling({HillMesh::kEdge, 1, HillMesh::kEdge});
-        shape_->buildAccelerator();
-    }
-    btScalar fractionOf(const btVector3& from, const btVector3& to, float /*radius*/) {
-        ClosestTriangle closest(from, to);
-        shape_->performRaycast(&closest, from, to);
-        return closest.m_hitFraction;
-    }
-
-private:
-    std::vector<float> ground_;
-    std::optional<btHeightfieldTerrainShape> shape_;
-};
-
-struct MeshGround {
-    explicit MeshGround(const Spheres& spheres)
-        : vertices(spheres.mesh.vertices()),
-          indices(spheres.mesh.indices().begin(), spheres.mesh.indices().end()),
-          array(static_cast<int>(indices.size() / 3), indices.data(), 3 * sizeof(int),
-                static_cast<int>(vertices.size()), vertices.data()->data(), sizeof(Vector3<float>)),
-          shape(&array, true) {}
-
-    btScalar fractionOf(const btVector3& from, const btVector3& to, float /*radius*/) {
-        ClosestTriangle closest(from, to);
-        shape.performRaycast(&closest, from, to);
-        return closest.m_hitFraction;
-    }
-
-    std::vector<Vector3<float>> vertices;
-    std::vector<int> indices;
-    btTriangleIndexVertexArray array;
-    btBvhTriangleMeshShape shape;
-};
-
 /// What a program does that has a Bullet world: casts a ray down, or lets the sphere fall.
 class WorldGround {
 public:
-    explicit WorldGround(const Spheres& spheres) : mesh_(spheres), question_(spheres.question) {
+    explicit WorldGround(const HillMesh& mesh, GroundQuestion question)
+        : mesh_(mesh), question_(question) {
         ground_.setCollisionShape(&mesh_.shape);
         world_.addCollisionObject(&ground_);
     }
@@ -329,13 +199,14 @@ public:
 
     [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
         if (kind.name == kBaseline) {
-            return std::make_unique<BulletGround<WorldGround>>(spheres_);
+            return std::make_unique<BulletGround<WorldGround>>(spheres_, spheres_.mesh,
+                                                               spheres_.question);
         }
         if (kind.name == "mesh") {
-            return std::make_unique<BulletGround<MeshGround>>(spheres_);
+            return std::make_unique<BulletGround<MeshGround>>(spheres_, spheres_.mesh);
         }
         if (kind.name == "heightfield") {
-            return std::make_unique<BulletGround<HeightfieldGround>>(spheres_);
+            return std::make_unique<BulletGround<HeightfieldGround>>(spheres_, spheres_.mesh);
         }
         return std::make_unique<OwnGround>(spheres_, kind.name == "hash-single" ? Way::oneByOne
                                                      : kind.onThreads           ? Way::threads
@@ -391,7 +262,8 @@ std::vector<Benchmark> terrainBenchmarks() {
                             "the ground below each of spheres that roam over 51,200 triangles",
                             GroundQuestion::surface),
             groundBenchmark("terrain-rest", "where each of these spheres, of 0.3 to 1 m, rests",
-                            GroundQuestion::rest)};
+                            GroundQuestion::rest),
+            terrainEditBenchmark()};
 }
 
 }  // namespace hashphase::benchmarks

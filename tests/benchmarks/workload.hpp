@@ -168,6 +168,7 @@ struct Benchmark {
 [[nodiscard]] std::vector<Benchmark> cullingBenchmarks();
 [[nodiscard]] std::vector<Benchmark> sweepBenchmarks();
 [[nodiscard]] std::vector<Benchmark> terrainBenchmarks();
+[[nodiscard]] Benchmark terrainEditBenchmark();
 [[nodiscard]] std::vector<Benchmark> effectsBenchmarks();
 [[nodiscard]] std::vector<Benchmark> snapshotBenchmarks();
 [[nodiscard]] std::vector<Benchmark> worldsBenchmarks();

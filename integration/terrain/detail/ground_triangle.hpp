@@ -44,6 +44,16 @@ struct alignas(64) GroundTriangle {
 
 static_assert(sizeof(GroundTriangle<float>) == 64);
 
+/// In place of one that was refused or removed.
+template <class Scalar>
+[[nodiscard]] GroundTriangle<Scalar> noTriangle() noexcept {
+    GroundTriangle<Scalar> none{};
+    for (auto* const corners : {&none.x, &none.z, &none.y}) {
+        corners->fill(std::numeric_limits<Scalar>::quiet_NaN());
+    }
+    return none;
+}
+
 /// A sphere's centre on its vertical line, and how high the point lies that carries it.
 struct Rest {
     double center = kNoHeight;
