@@ -98,13 +98,13 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, CornersOf cornersOf) {
     if (count > kNone - first) {
         return {};
     }
-    const Plan plan = prepare(first, count, cornersOf);
+    Plan plan = prepare(first, count, cornersOf);
     const std::size_t limit = std::max<std::size_t>(size(), first + count);
     triangles_.resize(limit, detail::noTriangle<Scalar>());
     proxies_.resize(limit);
     free_.take(first, plan.triangles.count);
     write(plan, cornersOf);
-    return plan.triangles;
+    return std::move(plan.triangles);
 }
 
 template <class Scalar>
@@ -114,10 +114,10 @@ AddedTriangles Terrain<Scalar>::replaceAll(std::uint32_t first, std::size_t coun
     if (!areTaken(first, count)) {
         return {};
     }
-    const Plan plan = prepare(first, count, cornersOf);
+    Plan plan = prepare(first, count, cornersOf);
     write(plan, cornersOf);
     tightenBounds(plan.triangles.count);
-    return plan.triangles;
+    return std::move(plan.triangles);
 }
 
 // Names those that are refused, and makes room for all that comes.
