@@ -26,10 +26,11 @@ struct MoveScratch {
     // For a caller who has to look at the proxies first: their indices, and who has to wait for others.
     std::vector<std::uint32_t> indices;
     std::vector<char> isAlone;
+    std::vector<int> ids;  // by which it tells them again after it has called back
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return sizeof(*this) + parts.capacity() * sizeof(Part) +
-               (entries.capacity() + indices.capacity()) * sizeof(std::uint32_t) +
+               (entries.capacity() + indices.capacity() + ids.capacity()) * sizeof(std::uint32_t) +
                isAlone.capacity() + namedBy.capacity() * sizeof(namedBy[0]);
     }
 };

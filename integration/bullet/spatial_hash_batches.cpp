@@ -14,6 +14,7 @@
 #include <atomic>
 #include <iterator>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -27,6 +28,12 @@ void prefetchAhead(std::span<btBroadphaseProxy* const> proxies, std::size_t i) n
     if (i + kAhead < proxies.size()) {
         detail::prefetch(proxies[i + kAhead]);
     }
+}
+
+// For assertions.
+[[maybe_unused]] bool areDifferent(std::vector<int> ids) {
+    std::sort(ids.begin(), ids.end());
+    return std::adjacent_find(ids.begin(), ids.end()) == ids.end();
 }
 
 }  // namespace
@@ -187,10 +194,21 @@ void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies
                                      btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
                      "There is exactly one box a proxy.");
+    const bool mayCallBack = ghostCount() > 0 || config_.eagerGroups != 0;
+    std::vector<int> ids;
+    if (mayCallBack) {
+        ids.swap(grid_.store().scratchOfMoves().ids);  // callbacks may set others
+        noteIds(proxies, ids);
+    }
     std::size_t i = AabbBatch(*this, proxies, aabbMins, aabbMaxs, dispatcher).set();
     for (; i < proxies.size(); ++i) {
         prefetchAhead(proxies, i);
-        setAabb(proxies[i], aabbMins[i], aabbMaxs[i], dispatcher);
+        if (!mayCallBack || proxies[i]->m_uniqueId == ids[i]) {
+            setAabb(proxies[i], aabbMins[i], aabbMaxs[i], dispatcher);
+        }
+    }
+    if (mayCallBack) {
+        ids.swap(grid_.store().scratchOfMoves().ids);
     }
 }
 
@@ -200,6 +218,25 @@ void SpatialHashBroadphase::forPairs(bool isOnThreads, std::size_t count, LoopBo
         config_.parallelFor(count, kGrain, body);
     } else {
         serialFor(count, kGrain, body);
+    }
+}
+
+void SpatialHashBroadphase::noteIds(std::span<btBroadphaseProxy* const> proxies,
+                                    std::vector<int>& ids) {
+    ids.clear();
+    for (const btBroadphaseProxy* const proxy : proxies) {
+        ids.push_back(proxy->m_uniqueId);
+    }
+}
+
+void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
+    checkMayChange();
+    Proxy& own = *checkedProxy(proxy);
+    if (!own.id.isNull()) {  // else destroyed before
+        const int uniqueId = own.m_uniqueId;
+        const std::uint64_t changeCount = cacheChangeCount_;
+        removePairsOf({&proxy, 1}, dispatcher);
+        endProxy(own, uniqueId, changeCount, dispatcher);
     }
 }
 
@@ -216,11 +253,40 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
         destroyProxies(others, dispatcher);
         return;
     }
+    std::vector<int> ids;
+    noteIds(proxies, ids);
+    HASHPHASE_ASSERT(
+        areDifferent(ids),
+        "Each proxy is named once: only one that this broadphase did not destroy yet can be.");
+    const std::uint64_t changeCount = cacheChangeCount_;
     removePairsOf(proxies, dispatcher);
-    // The second time that a proxy is named it is not alive any more, which is asserted.
     for (std::size_t i = 0; i < proxies.size(); ++i) {
         prefetchAhead(proxies, i);
-        removeFromGrid(checkedProxy(proxies[i]));
+        endProxy(static_cast<Proxy&>(*proxies[i]), ids[i], changeCount, dispatcher);
+    }
+}
+
+// Once its pairs have gone. Callbacks of these may have destroyed the proxy, or brought about other pairs with
+// it, which they cannot any more when it has left the grid.
+void SpatialHashBroadphase::endProxy(Proxy& proxy, int uniqueId, std::uint64_t changeCount,
+                                     btDispatcher* dispatcher) {
+    if (proxy.m_uniqueId != uniqueId) {
+        return;
+    }
+    grid_.remove(proxy.id);
+    noteSeen(proxy, false);
+    if (ghosts_ != nullptr) {
+        ghosts_->erase(proxy.id.index);
+    }
+    uniqueIds_[proxy.id.index] = 0;
+    proxy.id = {};
+    if (cacheChangeCount_ != changeCount) {
+        btBroadphaseProxy* const one = &proxy;
+        removePairsOf({&one, 1}, dispatcher);
+    }
+    if (proxy.m_uniqueId == uniqueId) {
+        proxy.m_uniqueId = 0;
+        proxy.m_clientObject = nullptr;
     }
 }
 
@@ -237,7 +303,7 @@ void SpatialHashBroadphase::removePairsOf(std::span<btBroadphaseProxy* const> pr
 }
 
 std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+    HASHPHASE_ASSERT(!isCalculating(),
                      "The origin is not shifted by callbacks of calculateOverlappingPairs().");
     const Vector3<btScalar> by = toEigen(shift);
     std::vector<std::uint32_t> few;  // of the proxies, where many more have gone

@@ -131,30 +131,6 @@ SpatialHashBroadphase::Proxy& SpatialHashBroadphase::place(const btBroadphasePro
     return proxy;
 }
 
-void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    checkMayChange();
-    Proxy* const own = checkedProxy(proxy);
-    if (!own->id.isNull()) {  // else destroyed before
-        removePairsOf({&proxy, 1}, dispatcher);
-        removeFromGrid(own);
-    }
-}
-
-void SpatialHashBroadphase::removeFromGrid(Proxy* proxy) {
-    if (proxy->id.isNull()) {  // destroyed before
-        return;
-    }
-    grid_.remove(proxy->id);
-    noteSeen(*proxy, false);
-    if (ghosts_ != nullptr) {
-        ghosts_->erase(proxy->id.index);
-    }
-    uniqueIds_[proxy->id.index] = 0;
-    proxy->id = {};
-    proxy->m_uniqueId = 0;
-    proxy->m_clientObject = nullptr;
-}
-
 void SpatialHashBroadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin,
                                     const btVector3& aabbMax, btDispatcher* dispatcher) {
     checkMayChange();
@@ -249,10 +225,13 @@ void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
 }
 
 void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+    HASHPHASE_ASSERT(!isCalculating(),
                      "calculateOverlappingPairs() is not called by its own callbacks.");
-    const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
+    const detail::QueryScope scope(idCounter_, detail::QueryScope::Changes::allowed);
     askIfMoreWasTakenOut(dispatcher);
+    if (isCacheBehind_) {  // all of it is read: what this frees first is freed before pairs are listed
+        static_cast<void>(pairCache_->getOverlappingPairArray());
+    }
     const PairChanges changes = updatePairs();
     if (isCacheBehind_) {
         catchUp(dispatcher);

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The spatial hash as Bullet's broadphase. In place of
+// The spatial hash as Bullet's broadphase:
 //
-//     btDbvtBroadphase broadphase;
-//
-// write
-//
-//     hashphase::SpatialHashBroadphase broadphase;
+//     hashphase::SpatialHashBroadphase broadphase;  // in place of btDbvtBroadphase
 //
 // What changes: pairs are exact (no fat boxes, no stale pairs), and are made and removed only in
 // calculateOverlappingPairs(). Pairs of ghost objects come at once, when the ghost is created or moved, and
 // when another object is created where the ghost stands, or jumps there.
 //
-// Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less
-//           cost.
+// Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less cost.
 // Threads   Rays and aabbTest() are const in all but name: any number may run at the same time
 //           and inside each other. Everything else needs the broadphase for itself, as in Bullet.
-// Units     the world's; nothing depends on their size
 // Bad data  A box with a NaN makes no pair and is reported once (diagnostics.hpp). Infinite, huge and
 //           inverted boxes are treated exactly as comparing their coordinates says. NULL clients and NULL
 //           dispatchers are fine.
@@ -25,7 +19,7 @@
 //           move and destroy proxies, and ask. A destroyed proxy is not reported any more; a moved or created
 //           one may be reported, once more, or not. Bullet itself sets limits: do not remove an object that
 //           it is working on. The overlap filter may ask but must not change anything, and no callback may
-//           call calculateOverlappingPairs(), shiftOrigin() or resetPool(); asserted.
+//           call calculateOverlappingPairs(), shiftOrigin(), resetPool() or releaseUnusedMemory(); asserted.
 // Memory    Where it runs out, std::bad_alloc is passed on and the call may be repeated: createProxy() has
 //           created nothing, shiftOrigin() has shifted nothing, setAabb() has moved the proxy. The first
 //           calculateOverlappingPairs() that returns brings the cache up to date, and ghosts' pairs as well.
@@ -213,18 +207,17 @@ public:
     /// From now on takes the proxy's box grown by `margin` [m] on all sides, also on its way where it sweeps: two
     /// are a pair when their boxes overlap, each grown by its own margin, and queries find the proxy by the grown
     /// box. proxy->m_aabbMin and m_aabbMax, and getAabb(), stay the box that the program has set. Counts from
-    /// this call on, as setAabb() with the present box does: queries see it at once, ghosts and eagerGroups have
-    /// their pairs at once, others from the next calculateOverlappingPairs() on. A margin that is negative,
-    /// infinite or NaN is asserted, and changes nothing. A new proxy has a margin of 0, also after
-    /// refreshBroadphaseProxy(). To Bullet, a pair within the margins is a pair: two dynamic bodies sleep only
-    /// together, and the narrow phase runs in each step while one is awake. Cost: as setAabb().
+    /// this call on, as setAabb() with the present box does: queries see it at once, and a ghost, or one of
+    /// eagerGroups, has its pairs at once. A margin that is negative, infinite or NaN is asserted, and changes
+    /// nothing. A new proxy has none, also after refreshBroadphaseProxy(). To Bullet, a pair within margins is a
+    /// pair: two dynamic bodies sleep only together, and have a narrow phase while awake. Cost: as setAabb().
     void setMargin(btBroadphaseProxy* proxy, btScalar margin, btDispatcher* dispatcher);
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
 
     /// From now on the two are no pair, whatever groups, masks and the filter say: see Pairs::ignore(). A present
-    /// pair goes at once, with its algorithm and contacts, and ghosts are told. Ends with stopIgnoringPair(), or
-    /// when one proxy is destroyed, also by refreshBroadphaseProxy(). The two differ (asserted). Cost: O(1), and
-    /// that of the cache for a pair; for a cache with deferred removal a pass over its pairs.
+    /// pair goes at once, and ghosts are told; with its algorithm, under PairOrder::canonical when the cache is next
+    /// read. Ends with stopIgnoringPair(), or when one proxy is destroyed, also by refreshBroadphaseProxy(). The two
+    /// differ (asserted). Cost: O(1), and that of the cache; of one with deferred removal a pass over its pairs.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     /// Where the two overlap, and the filter accepts it, they are a pair at once. Cost: as ignorePair().
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
@@ -232,10 +225,10 @@ public:
 
     /// Makes the ignored pairs of this proxy those that Bullet's dispatcher refuses: with the objects that its
     /// btCollisionObject lists by setIgnoreCollisionCheck(), and that are in the world. Others that it had, those
-    /// of ignorePair() too, are ignored no more, unless the other object lists this one. Call it when the list
-    /// has changed, also by addConstraint() with disableCollisionsBetweenLinkedBodies or removeConstraint(), and
-    /// when the object, or one of the list, has been added. The client is a btCollisionObject; a list may name
-    /// objects that are gone. Cost: a pass over all proxies and ignored pairs, and as ignorePair() a change.
+    /// of ignorePair() too, are ignored no more, unless the other object lists this one. Call it for the one that
+    /// lists, when the list has changed, also by addConstraint() with disableCollisionsBetweenLinkedBodies or
+    /// removeConstraint(), and when it, or one listed, was added. Clients of it and of whom it ignores are
+    /// btCollisionObjects; a list may name some that are gone. Cost: a pass over all proxies and ignored pairs.
     void collisionChecksChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
     /// The same for many proxies, in one pass.
     void collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,
@@ -243,10 +236,9 @@ public:
 
     /// Frees the algorithms and contacts that the proxy's pairs have made from its shape, here and in the
     /// ghosts that list it; the pairs stay. Call it after a change of shape, scale, margin or other data by
-    /// which contacts are made, beside btCollisionWorld::updateSingleAabb(), before the next step. A ghost
-    /// callback is told that each pair has ended and begun; a cache with deferred removal tells ghosts
-    /// nothing. Cost: that of PairCache::renewPairsContainingProxy(); a pass over all pairs of any other
-    /// cache.
+    /// which contacts are made, beside btCollisionWorld::updateSingleAabb(), before the next step. A ghost callback
+    /// is told that each pair has ended and begun (an end that it brings about itself is told again); a cache with
+    /// deferred removal tells nothing. Cost: that of PairCache::renewPairsContainingProxy(); any other cache's all.
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy: see
@@ -313,6 +305,7 @@ private:
     void listChanges(const PairChanges& changes, std::vector<BulletProxyPair>& died,
                      std::vector<BulletProxyPair>& born) const;
     void listAll(std::vector<BulletProxyPair>& bulletPairs) const;
+    [[nodiscard]] Aabb<btScalar> bounds() const;  // of all proxies
     [[nodiscard]] bool isWorld() const noexcept { return idCounter_ != &lastUniqueId_; }
     [[nodiscard]] bool isOfThisWorld(const btBroadphaseProxy& proxy) const noexcept {
         return static_cast<const Proxy&>(proxy).world == worldNumber_;
@@ -359,7 +352,13 @@ private:
     void stopIgnoring(std::span<const ProxyPair> pairs, btDispatcher* dispatcher);
     void renewPairsOfOtherCache(btBroadphaseProxy& proxy, btDispatcher* dispatcher);
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
-    void removeFromGrid(Proxy* proxy);
+    void endProxy(Proxy& proxy, int uniqueId, std::uint64_t changeCount, btDispatcher* dispatcher);
+    // By which it is told what callbacks have destroyed.
+    static void noteIds(std::span<btBroadphaseProxy* const> proxies, std::vector<int>& ids);
+    // Whether it, or a world beside it, calculates on this thread, and calls back.
+    [[nodiscard]] bool isCalculating() const noexcept {
+        return detail::QueryScope::isWithin(idCounter_);
+    }
     void dropLastProxies() noexcept;
     void releaseAfterPeak() noexcept;
     void forPairs(bool isOnThreads, std::size_t count, LoopBody body) const;

@@ -15,8 +15,7 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
     checkMayChange();
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
-                     "Memory is not given back within a callback.");
+    HASHPHASE_ASSERT(!isCalculating(), "Memory is not given back within a callback.");
     grid_.releaseUnusedMemory();
     pairs_.releaseUnusedMemory();
     if (sweeps_ != nullptr) {
@@ -60,8 +59,7 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
     if (grid_.size() > 0) {
         return;
     }
-    const bool isWithin =
-        detail::QueryScope::isWithin(this) || detail::QueryScope::isWithin(&grid_);
+    const bool isWithin = isCalculating() || detail::QueryScope::isWithin(&grid_);
     HASHPHASE_ASSERT(!isWithin, "resetPool() is not called by callbacks.");
     if (!isWithin) {
         pairs_.clear();
@@ -80,7 +78,8 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
 std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
     return sizeof(*this) - sizeof(grid_) - sizeof(pairs_) + grid_.memoryBytes() +
            pairs_.memoryBytes() + proxies_.memoryBytes() +
-           (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
+           (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) +
+           uniqueIds_.capacity() * sizeof(int) +
            (died_.capacity() + born_.capacity()) * sizeof(BulletProxyPair) +
            seen_.capacity() * sizeof(seen_[0]) +
            (ghosts_ != nullptr ? sizeof(*ghosts_) + ghosts_->memoryBytes() : 0) +

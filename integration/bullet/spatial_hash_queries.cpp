@@ -207,13 +207,18 @@ bool SpatialHashBroadphase::endsAabbTest(const btVector3& aabbMin, const btVecto
     return collector.isStopped;
 }
 
-void SpatialHashBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
+Aabb<btScalar> SpatialHashBroadphase::bounds() const {
     Aabb<btScalar> all;
     grid_.forEach([&](ProxyId /*id*/, const Aabb<btScalar>& box) {
         if (!hasNan(box)) {
             all.extend(box);
         }
     });
+    return all;
+}
+
+void SpatialHashBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
+    const Aabb<btScalar> all = bounds();
     aabbMin = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.min());
     aabbMax = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.max());
 }

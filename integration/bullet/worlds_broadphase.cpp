@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
@@ -94,19 +95,27 @@ SpatialHashBroadphase& WorldsBroadphase::worldForClient(const void* client) {
     return world(number);
 }
 
-// Calls call(world, its proxies), world by world.
+// Calls call(world, its proxies), world by world, without those that callbacks of the former have destroyed.
 template <class Call>
 void WorldsBroadphase::forEachWorldOf(std::span<btBroadphaseProxy* const> proxies,
                                       const Call& call) const {
     std::vector<btBroadphaseProxy*> sorted(proxies.begin(), proxies.end());
-    const auto isBefore = [this](const btBroadphaseProxy* a, const btBroadphaseProxy* b) {
-        return worldOf(a) < worldOf(b);
-    };
-    std::stable_sort(sorted.begin(), sorted.end(), isBefore);
-    for (auto first = sorted.begin(); first != sorted.end();) {
-        const auto last = std::upper_bound(first, sorted.end(), *first, isBefore);
-        call(worldFor(*first), std::span<btBroadphaseProxy* const>(first, last));
-        first = last;
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [this](const btBroadphaseProxy* a, const btBroadphaseProxy* b) {
+                         return worldOf(a) < worldOf(b);
+                     });
+    std::vector<int> ids;
+    World::noteIds(sorted, ids);
+    std::vector<btBroadphaseProxy*> present;
+    for (std::size_t i = 0; i < sorted.size();) {
+        World& world = worldFor(sorted[i]);
+        present.clear();
+        for (; i < sorted.size() && &worldFor(sorted[i]) == &world; ++i) {
+            if (sorted[i]->m_uniqueId == ids[i]) {
+                present.push_back(sorted[i]);
+            }
+        }
+        call(world, std::span<btBroadphaseProxy* const>(present));
     }
 }
 
@@ -166,17 +175,14 @@ QueryCost WorldsBroadphase::closestRay(const btVector3& from, const btVector3& t
 void WorldsBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const {
     Aabb<btScalar> all;
     for (const auto& world : worlds_) {
-        if (world->grid().size() > world->grid().nanCount()) {
-            world->getBroadphaseAabb(aabbMin, aabbMax);
-            all.extend(toAabb(aabbMin, aabbMax));
-        }
+        all.extend(world->bounds());
     }
     aabbMin = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.min());
     aabbMax = all.isEmpty() ? btVector3(0, 0, 0) : toBullet(all.max());
 }
 
 void WorldsBroadphase::resetPool(btDispatcher* dispatcher) {
-    const bool isWithin = detail::QueryScope::isWithin(this);
+    const bool isWithin = detail::QueryScope::isWithin(&lastUniqueId_);
     HASHPHASE_ASSERT(!isWithin, "resetPool() is not called by callbacks.");
     const auto isEmpty = [](const auto& world) { return world->grid().size() == 0; };
     if (isWithin || !std::all_of(worlds_.begin(), worlds_.end(), isEmpty)) {
@@ -195,9 +201,14 @@ void WorldsBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies,
                                 std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
                      "There is exactly one box a proxy.");
+    std::vector<int> ids = std::exchange(notedIds_, {});  // callbacks may set others
+    World::noteIds(proxies, ids);
     for (std::size_t i = 0; i < proxies.size(); ++i) {
-        setAabb(proxies[i], aabbMins[i], aabbMaxs[i], dispatcher);
+        if (proxies[i]->m_uniqueId == ids[i]) {  // else a callback has destroyed it
+            setAabb(proxies[i], aabbMins[i], aabbMaxs[i], dispatcher);
+        }
     }
+    notedIds_ = std::move(ids);
 }
 
 // All pairs at once: the cache may pass over those of all worlds.
@@ -208,15 +219,19 @@ void WorldsBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxie
                  [this](btBroadphaseProxy* proxy) {
                      return !worldFor(proxy).checkedProxy(proxy)->id.isNull();
                  });
+    std::vector<std::pair<int, std::uint64_t>> noted;
+    for (const btBroadphaseProxy* const proxy : alive) {
+        noted.emplace_back(proxy->m_uniqueId, worldFor(proxy).cacheChangeCount_);
+    }
     const detail::OnFailure fallBehind([&] {  // for nobody is destroyed
         for (const btBroadphaseProxy* const proxy : alive) {
             worldFor(proxy).isCacheBehind_ = true;
         }
     });
     pairCache_->removePairsOf(alive, dispatcher, PairCache::Remover::broadphase);
-    for (btBroadphaseProxy* const proxy : alive) {
-        World& world = worldFor(proxy);
-        world.removeFromGrid(world.checkedProxy(proxy));
+    for (std::size_t i = 0; i < alive.size(); ++i) {
+        worldFor(alive[i]).endProxy(static_cast<World::Proxy&>(*alive[i]), noted[i].first,
+                                    noted[i].second, dispatcher);
     }
 }
 
@@ -280,7 +295,7 @@ void WorldsBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* disp
 }
 
 std::size_t WorldsBroadphase::shiftOrigin(const btVector3& shift) {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&lastUniqueId_),
                      "The origin is not shifted by callbacks of calculateOverlappingPairs().");
     std::size_t roundedCount = 0;
     for (const auto& world : worlds_) {

@@ -216,6 +216,7 @@ private:
     void updateWorlds();
     void listChanges();
     void applyChanges(btDispatcher* dispatcher);
+    [[nodiscard]] bool areAnyBehind() const noexcept;
     void setBehind() noexcept;
 
     WorldsConfig config_;
@@ -226,7 +227,8 @@ private:
     std::vector<Updated> updated_;       // of the calculation under way
     std::vector<BulletProxyPair> died_;  // in all of these
     std::vector<BulletProxyPair> born_;
-    detail::PeakWatch peaks_;  // of the cache
+    std::vector<int> notedIds_;  // scratch of setAabbs()
+    detail::PeakWatch peaks_;    // of the cache
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -7,15 +7,19 @@
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/on_failure.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 void WorldsBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&lastUniqueId_),
                      "calculateOverlappingPairs() is not called by its own callbacks.");
-    const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
+    const detail::QueryScope scope(&lastUniqueId_, detail::QueryScope::Changes::allowed);
     listUpdated(dispatcher);
+    if (areAnyBehind()) {  // all of the cache is read: what this frees first is freed before pairs are listed
+        static_cast<void>(pairCache_->getOverlappingPairArray());
+    }
     updateWorlds();
     applyChanges(dispatcher);
     for (const Updated& each : updated_) {
@@ -36,6 +40,11 @@ void WorldsBroadphase::listUpdated(btDispatcher* dispatcher) {
             updated_.push_back({world.get()});
         }
     }
+}
+
+bool WorldsBroadphase::areAnyBehind() const noexcept {
+    return std::any_of(updated_.begin(), updated_.end(),
+                       [](const Updated& each) { return each.world->isCacheBehind_; });
 }
 
 // What others are to see, as a filter callback, is seen on the caller's thread.
@@ -64,17 +73,18 @@ void WorldsBroadphase::setBehind() noexcept {
 void WorldsBroadphase::listChanges() {
     died_.clear();
     born_.clear();
-    bool areAnyBehind = false;
     for (const Updated& each : updated_) {
-        areAnyBehind = areAnyBehind || each.world->isCacheBehind_;
         if (each.world->isCacheBehind_) {
             each.world->listAll(born_);
         } else {
             each.world->listChanges(each.changes, died_, born_);
         }
     }
+    if (!areAnyBehind()) {
+        return;
+    }
     const btBroadphasePairArray& present = pairCache_->getOverlappingPairArray();
-    for (int i = 0; areAnyBehind && i < present.size(); ++i) {
+    for (int i = 0; i < present.size(); ++i) {
         btBroadphaseProxy& first = *present[i].m_pProxy0;
         btBroadphaseProxy& second = *present[i].m_pProxy1;
         const World& world = worldFor(&first);
@@ -90,6 +100,7 @@ public:
     explicit Applying(WorldsBroadphase& owner) noexcept : owner_(owner) {
         for (Updated& each : owner_.updated_) {
             each.world->isCacheBehind_ = false;
+            ++each.world->cacheChangeCount_;
             each.isWithinApply = std::exchange(each.world->isApplying_, true);
         }
     }
@@ -150,7 +161,7 @@ bool WorldsBroadphase::refuses(const btBroadphaseProxy& a,
 
 std::size_t WorldsBroadphase::memoryBytes() const noexcept {
     std::size_t bytes = sizeof(*this) + worlds_.capacity() * sizeof(worlds_[0]) +
-                        updated_.capacity() * sizeof(Updated) +
+                        updated_.capacity() * sizeof(Updated) + notedIds_.capacity() * sizeof(int) +
                         (died_.capacity() + born_.capacity()) * sizeof(BulletProxyPair) +
                         (ownCache_ != nullptr ? ownCache_->memoryBytes() : 0);
     for (const auto& world : worlds_) {
@@ -160,10 +171,15 @@ std::size_t WorldsBroadphase::memoryBytes() const noexcept {
 }
 
 void WorldsBroadphase::releaseUnusedMemory() noexcept {
+    const bool isWithin = detail::QueryScope::isWithin(&lastUniqueId_);
+    HASHPHASE_ASSERT(!isWithin, "Memory is not given back within a callback.");
+    if (isWithin) {
+        return;
+    }
     for (const auto& world : worlds_) {
         world->releaseUnusedMemory();
     }
-    detail::freeArrays(updated_, died_, born_);
+    detail::freeArrays(updated_, died_, born_, notedIds_);
     pairCache_->releaseUnusedMemory();
 }
 

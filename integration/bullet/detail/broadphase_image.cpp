@@ -38,7 +38,7 @@ std::string BroadphaseImage::faultOf(const SpatialHashBroadphase& broadphase) {
         return "The broadphase is one of many worlds.";
     }
     const bool isWithin = cache->processDepth_ > 0 || broadphase.isApplying_ ||
-                          QueryScope::isWithin(cache) || QueryScope::isWithin(&broadphase) ||
+                          QueryScope::isWithin(cache) || broadphase.isCalculating() ||
                           QueryScope::isWithin(&broadphase.grid_.store());
     return isWithin ? "A callback of the broadphase or of its pair cache is under way."
                     : std::string();

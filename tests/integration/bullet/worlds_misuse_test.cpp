@@ -77,13 +77,33 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
         within = {assertedBy([&] { boxes.step(); }), assertedBy([&] {
                       boxes.worlds.shiftOrigin({1, 0, 0});
                   }),
-                  assertedBy([&] { boxes.worlds.resetPool(nullptr); })};
+                  assertedBy([&] { boxes.worlds.resetPool(nullptr); }),
+                  assertedBy([&] { boxes.worlds.world(1).calculateOverlappingPairs(nullptr); }),
+                  assertedBy([&] {
+                      boxes.worlds.world(0).shiftOrigin({1, 0, 0});
+                  })};
     };
+    const std::string notCalculated =
+        "calculateOverlappingPairs() is not called by its own callbacks.";
+    const std::string notShifted =
+        "The origin is not shifted by callbacks of calculateOverlappingPairs().";
+    const std::vector<std::string> expected{notCalculated, notShifted,
+                                            "resetPool() is not called by callbacks.",
+                                            notCalculated, notShifted};
     boxes.step();
-    EXPECT_EQ(within, std::vector<std::string>(
-                          {"calculateOverlappingPairs() is not called by its own callbacks.",
-                           "The origin is not shifted by callbacks of calculateOverlappingPairs().",
-                           "resetPool() is not called by callbacks."}));
+    EXPECT_EQ(within, expected);
+    boxes.createIn(0, ManyWorlds::kPlace);
+    boxes.worlds.world(0).calculateOverlappingPairs(nullptr);
+    EXPECT_EQ(within, expected);
+    journal.onBirth = [&](btBroadphaseProxy*, btBroadphaseProxy*) {
+        const CaughtAsserts caught;
+        boxes.worlds.releaseUnusedMemory();
+        EXPECT_EQ(caught.count(), 1);
+    };
+    boxes.createIn(1, ManyWorlds::kPlace);
+    boxes.createIn(1, ManyWorlds::kPlace);
+    boxes.step();
+    journal.onBirth = nullptr;
     const std::string none = "There is a world of that number.";
     EXPECT_EQ(assertedBy([&] { static_cast<void>(boxes.worlds.world(-1)); }), none);
     EXPECT_EQ(assertedBy([&] { static_cast<void>(std::as_const(boxes.worlds).world(2)); }), none);
