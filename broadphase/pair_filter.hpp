@@ -40,9 +40,8 @@ public:
     using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
 
     template <std::convertible_to<OfOne> Ask>
-    PairFilter(Ask&& ask
-               [[HASHPHASE_LIFETIME_BOUND]]) noexcept  // NOLINT: conversion is its purpose
-        : ask_(ask, kAskEach) {}
+    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): no PairFilter converts to OfOne
+    PairFilter(Ask&& ask [[HASHPHASE_LIFETIME_BOUND]]) noexcept : ask_(ask, kAskEach) {}
 
     template <class Ask>
         requires(!std::is_same_v<std::remove_cvref_t<Ask>, PairFilter> &&

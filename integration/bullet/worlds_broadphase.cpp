@@ -220,6 +220,7 @@ void WorldsBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxie
                      return !worldFor(proxy).checkedProxy(proxy)->id.isNull();
                  });
     std::vector<std::pair<int, std::uint64_t>> noted;
+    noted.reserve(alive.size());
     for (const btBroadphaseProxy* const proxy : alive) {
         noted.emplace_back(proxy->m_uniqueId, worldFor(proxy).cacheChangeCount_);
     }

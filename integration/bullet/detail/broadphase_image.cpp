@@ -208,8 +208,7 @@ std::size_t BroadphaseImage::memoryBytes() const noexcept {
            uniqueIds_.capacity() * sizeof(int) + seen_.capacity() * sizeof(seen_[0]) +
            (ghosts_ != nullptr ? sizeof(*ghosts_) + ghosts_->memoryBytes() : 0) +
            (pairs_.capacity() + takenOut_.capacity()) * sizeof(Pair) +
-           retired_.capacity() * sizeof(retired_[0]) +
-           algorithms_.capacity() * sizeof(algorithms_[0]);
+           retired_.capacity() * sizeof(retired_[0]) + algorithms_.capacity() * sizeof(void*);
 }
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

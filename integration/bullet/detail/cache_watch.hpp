@@ -63,9 +63,9 @@ struct CacheWatch final : CacheWatcher {
         return isMoreTakenOut || takenOut != nullptr;
     }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return takenOut == nullptr
-                   ? 0
-                   : sizeof(*takenOut) + takenOut->capacity() * sizeof(BulletProxyPair);
+        return takenOut == nullptr ? 0
+                                   : sizeof(std::vector<BulletProxyPair>) +
+                                         takenOut->capacity() * sizeof(BulletProxyPair);
     }
 
     void pruneTakenOut() noexcept;

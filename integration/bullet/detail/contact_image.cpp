@@ -155,9 +155,8 @@ std::string ContactImage::end(const btCollisionDispatcher& dispatcher) {
 
 std::size_t ContactImage::memoryBytes() const noexcept {
     return sizeof(*this) + owned_.capacity() * sizeof(int) + heads_.capacity() * sizeof(Head) +
-           points_.capacity() * sizeof(btManifoldPoint) +
-           manifolds_.capacity() * sizeof(manifolds_[0]) +
-           static_cast<std::size_t>(found_.capacity()) * sizeof(btPersistentManifold*);
+           points_.capacity() * sizeof(btManifoldPoint) + manifolds_.capacity() * sizeof(void*) +
+           static_cast<std::size_t>(found_.capacity()) * sizeof(void*);
 }
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -72,10 +72,12 @@ private:
         if (!areManifolds(1)) {
             return false;
         }
-        const Head* const head = ownedCount_ > 0 ? &image_.heads_[ownedCount_ - 1] : nullptr;
-        return image_.owned_[at_ - 1] == 0 ||
-               (head->bodies[0] == pair_.a && head->bodies[1] == pair_.b) ||
-               (head->bodies[0] == pair_.b && head->bodies[1] == pair_.a);
+        if (image_.owned_[at_ - 1] == 0) {
+            return true;
+        }
+        const Head& head = image_.heads_[ownedCount_ - 1];
+        return (head.bodies[0] == pair_.a && head.bodies[1] == pair_.b) ||
+               (head.bodies[0] == pair_.b && head.bodies[1] == pair_.a);
     }
     [[nodiscard]] bool areChildPairs(const btCompoundShape& a, const btCompoundShape& b) {
         const int count = next();

@@ -200,9 +200,12 @@ private:
     [[nodiscard]] static btCollisionObjectWrapper childOf(const btCollisionObjectWrapper& compound,
                                                           int child) {
         const btCompoundShape& shape = compoundOf(*compound.getCollisionShape());
-        return btCollisionObjectWrapper(&compound, shape.getChildShape(child),
-                                        compound.getCollisionObject(), compound.getWorldTransform(),
-                                        -1, child);
+        return {&compound,
+                shape.getChildShape(child),
+                compound.getCollisionObject(),
+                compound.getWorldTransform(),
+                -1,
+                child};
     }
 
     void buildChildPairs(btCollisionAlgorithm& algorithm, const btCollisionObjectWrapper& a,

@@ -173,7 +173,7 @@ void WorldImage::makeRoom(btDiscreteDynamicsWorld& world,
     const auto isReshaped = [](const SavedObject& saved) {
         return saved.object->getCollisionShape() != saved.shape;
     };
-    reshaped.reserve(static_cast<std::size_t>(std::ranges::count_if(objects, isReshaped)));
+    reshaped_.reserve(static_cast<std::size_t>(std::ranges::count_if(objects, isReshaped)));
     std::size_t ghostPairs = 0;
     const btCollisionObjectArray& all = world.getCollisionObjectArray();
     for (int i = 0; i < all.size(); ++i) {
@@ -186,13 +186,13 @@ void WorldImage::makeRoom(btDiscreteDynamicsWorld& world,
 }
 
 void WorldImage::takeOutAdded(btDiscreteDynamicsWorld& world) const {
-    for (btTypedConstraint* joint : addedJoints) {
+    for (btTypedConstraint* joint : addedJoints_) {
         world.removeConstraint(joint);
     }
-    for (btActionInterface* action : addedActions) {
+    for (btActionInterface* action : addedActions_) {
         world.removeAction(action);
     }
-    for (btCollisionObject* object : addedObjects) {
+    for (btCollisionObject* object : addedObjects_) {
         world.removeCollisionObject(object);
     }
 }
@@ -212,7 +212,7 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
     ghosts.endDetach();
     broadphase.restore(ofBroadphase, &dispatcher);
     all.resizeNoInitialize(0);
-    reshaped.clear();
+    reshaped_.clear();
     for (std::size_t i = 0; i < objects.size(); ++i) {
         prefetch(
             &ObjectMembers::shape(*objects[std::min(i + kLinesAhead, objects.size() - 1)].object));
@@ -225,12 +225,12 @@ void WorldImage::restore(btDiscreteDynamicsWorld& world,
         object.setWorldArrayIndex(all.size());
         all.push_back(&object);
         if (isOtherShape) {
-            reshaped.add(&object);
+            reshaped_.add(&object);
         }
     }
-    if (reshaped.size() > 0) {
-        BroadphaseImage::freeAlgorithmsOf(ofBroadphase, reshaped, dispatcher);
-        ghosts.freeAlgorithmsOf(reshaped, dispatcher);
+    if (reshaped_.size() > 0) {
+        BroadphaseImage::freeAlgorithmsOf(ofBroadphase, reshaped_, dispatcher);
+        ghosts.freeAlgorithmsOf(reshaped_, dispatcher);
     }
 
     contacts.beginRestore();

@@ -86,9 +86,9 @@ struct WorldImage {
                joints.capacity() * sizeof(joints[0]) + fields.memoryBytes() +
                settings.memoryBytes() +
                (bodies.capacity() + actions.capacity() + pointers.capacity() +
-                addedObjects.capacity() + addedJoints.capacity() + addedActions.capacity()) *
+                addedObjects_.capacity() + addedJoints_.capacity() + addedActions_.capacity()) *
                    sizeof(void*) +
-               present.memoryBytes() + brought.memoryBytes() + reshaped.memoryBytes();
+               present_.memoryBytes() + brought_.memoryBytes() + reshaped_.memoryBytes();
     }
 
 private:
@@ -97,10 +97,10 @@ private:
                  std::span<Item* const> returned, const AddressOf& addressOf,
                  std::vector<Item*>& added) const;
     [[nodiscard]] bool isPresent(const void* pointer) const {
-        return areAllPresent || present.contains(reinterpret_cast<std::uintptr_t>(pointer));
+        return areAllPresent_ || present_.contains(reinterpret_cast<std::uintptr_t>(pointer));
     }
     [[nodiscard]] bool isHandedOver(const void* pointer) const {
-        return brought.contains(reinterpret_cast<std::uintptr_t>(pointer));
+        return brought_.contains(reinterpret_cast<std::uintptr_t>(pointer));
     }
     void saveSettings(btDiscreteDynamicsWorld& world);
     [[nodiscard]] std::string readObjects(ByteReader& from, btDiscreteDynamicsWorld& world,
@@ -127,16 +127,16 @@ private:
         std::size_t place;
         std::uint32_t number;
     };
-    std::vector<JointPlace> jointPlaces;  // scratch of read()
+    std::vector<JointPlace> jointPlaces_;  // scratch of read()
 
     // Scratch of find(): the addresses of what is there and of what is handed over; and what is to be taken out.
-    mutable FlatSet present;
-    mutable FlatSet brought;
-    mutable ObjectNumbers reshaped;  // scratch of restore(): those that have other shapes now
-    mutable bool areAllPresent = false;
-    mutable std::vector<btCollisionObject*> addedObjects;
-    mutable std::vector<btTypedConstraint*> addedJoints;
-    mutable std::vector<btActionInterface*> addedActions;
+    mutable FlatSet present_;
+    mutable FlatSet brought_;
+    mutable ObjectNumbers reshaped_;  // scratch of restore(): those that have other shapes now
+    mutable bool areAllPresent_ = false;
+    mutable std::vector<btCollisionObject*> addedObjects_;
+    mutable std::vector<btTypedConstraint*> addedJoints_;
+    mutable std::vector<btActionInterface*> addedActions_;
 };
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

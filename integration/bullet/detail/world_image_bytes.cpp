@@ -254,8 +254,8 @@ std::string WorldImage::takeNumbers(ByteReader& from, std::span<const std::uint3
             return contradiction("objects");
         }
         for (int i = 0; i < saved.jointCount; ++i) {
-            jointPlaces.push_back({firstJoint + static_cast<std::size_t>(i),
-                                   numbers[firstJoint + static_cast<std::size_t>(i)]});
+            jointPlaces_.push_back({firstJoint + static_cast<std::size_t>(i),
+                                    numbers[firstJoint + static_cast<std::size_t>(i)]});
         }
     }
     const auto bodyCount = from.read<std::uint32_t>();
@@ -311,7 +311,7 @@ std::string WorldImage::readJoints(ByteReader& from, btDiscreteDynamicsWorld& wo
         }
         joints.push_back({found, type, &found->getRigidBodyA(), &found->getRigidBodyB()});
     }
-    for (const auto& [place, number] : jointPlaces) {
+    for (const auto& [place, number] : jointPlaces_) {
         if (number >= joints.size()) {
             return contradiction("joints");
         }

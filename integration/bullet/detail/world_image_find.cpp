@@ -96,36 +96,36 @@ std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
 }
 
 // Those of the world whose addresses are not among the saved ones are listed as added; of the saved ones, `present`
-// has those that are there, and `brought` what is returned.
+// has those that are there, and `brought_` what is returned.
 template <class Saved, class Item, class AddressOf>
 void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectArray<Item*>& all,
                          std::span<Item* const> returned, const AddressOf& addressOf,
                          std::vector<Item*>& added) const {
     added.clear();
-    present.clear();
-    brought.clear();
+    present_.clear();
+    brought_.clear();
     for (Item* const item : returned) {
-        brought.findOrInsert(keyOf(item));
+        brought_.findOrInsert(keyOf(item));
     }
     bool areSame = saved.size() == static_cast<std::size_t>(all.size());
     for (int i = 0; areSame && i < all.size(); ++i) {
         areSame = addressOf(saved[static_cast<std::size_t>(i)]) == all[i];
     }
-    areAllPresent = areSame;
+    areAllPresent_ = areSame;
     if (areSame) {
         return;
     }
     for (const Saved& each : saved) {
-        present.findOrInsert(keyOf(addressOf(each)));
+        present_.findOrInsert(keyOf(addressOf(each)));
     }
     for (int i = 0; i < all.size(); ++i) {
-        if (!present.contains(keyOf(all[i]))) {
+        if (!present_.contains(keyOf(all[i]))) {
             added.push_back(all[i]);
         }
     }
-    present.clear();
+    present_.clear();
     for (int i = 0; i < all.size(); ++i) {
-        present.findOrInsert(keyOf(all[i]));
+        present_.findOrInsert(keyOf(all[i]));
     }
 }
 
@@ -141,7 +141,7 @@ std::string WorldImage::findObjects(btDiscreteDynamicsWorld& world,
                                     const Returned& returned) const {
     compare(
         objects, world.getCollisionObjectArray(), returned.objects,
-        [](const SavedObject& saved) { return saved.object; }, addedObjects);
+        [](const SavedObject& saved) { return saved.object; }, addedObjects_);
     for (std::size_t i = 0; i < objects.size(); ++i) {
         const SavedObject& saved = objects[i];
         const bool isThere = isPresent(saved.object);
@@ -175,7 +175,7 @@ std::string WorldImage::findObjects(btDiscreteDynamicsWorld& world,
 std::string WorldImage::findJoints(btDiscreteDynamicsWorld& world, const Returned& returned) const {
     compare(
         joints, WorldMembers::joints(world), returned.joints,
-        [](const SavedJoint& saved) { return saved.joint; }, addedJoints);
+        [](const SavedJoint& saved) { return saved.joint; }, addedJoints_);
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const SavedJoint& saved = joints[i];
         const auto sentence = [&](const char* what) {
@@ -196,7 +196,7 @@ std::string WorldImage::findActions(btDiscreteDynamicsWorld& world,
                                     const Returned& returned) const {
     compare(
         actions, WorldMembers::actions(world), returned.actions,
-        [](btActionInterface* action) { return action; }, addedActions);
+        [](btActionInterface* action) { return action; }, addedActions_);
     for (std::size_t i = 0; i < actions.size(); ++i) {
         if (!isPresent(actions[i]) && !isHandedOver(actions[i])) {
             return "Action " + std::to_string(i) +
