@@ -95,8 +95,8 @@ std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
     return {};
 }
 
-// Those of the world whose addresses are not among the saved ones are listed as added; of the saved ones, `present`
-// has those that are there, and `brought_` what is returned.
+// Those of the world whose addresses are not among the saved ones are listed as added; of the saved ones,
+// `present_` has those that are there, and `brought_` what is returned.
 template <class Saved, class Item, class AddressOf>
 void WorldImage::compare(const std::vector<Saved>& saved, const btAlignedObjectArray<Item*>& all,
                          std::span<Item* const> returned, const AddressOf& addressOf,
