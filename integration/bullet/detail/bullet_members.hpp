@@ -26,9 +26,12 @@ struct Reveal {
     friend constexpr typename Tag::Member revealed(Tag /*tag*/) { return kMember; }
 };
 
+template <class Class, class Type>
+using MemberOf = Type Class::*;
+
 #define HASHPHASE_REVEAL(Class, Type, name)                                                        \
     struct Class##_##name {                                                                        \
-        using Member = Type Class::*;                                                              \
+        using Member = MemberOf<Class, Type>;                                                      \
         friend constexpr Member revealed(Class##_##name /*tag*/);                                  \
     };                                                                                             \
     template struct Reveal<Class##_##name, &Class::name>
