@@ -229,6 +229,12 @@ void SpatialHashBroadphase::noteIds(std::span<btBroadphaseProxy* const> proxies,
     }
 }
 
+void SpatialHashBroadphase::checkNamedOnce([[maybe_unused]] std::span<const int> ids) {
+    HASHPHASE_ASSERT(
+        areDifferent({ids.begin(), ids.end()}),
+        "Each proxy is named once: only one that this broadphase did not destroy yet.");
+}
+
 void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
     checkMayChange();
     Proxy& own = *checkedProxy(proxy);
@@ -255,9 +261,7 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
     }
     std::vector<int> ids;
     noteIds(proxies, ids);
-    HASHPHASE_ASSERT(
-        areDifferent(ids),
-        "Each proxy is named once: only one that this broadphase did not destroy yet can be.");
+    checkNamedOnce(ids);
     const std::uint64_t changeCount = cacheChangeCount_;
     removePairsOf(proxies, dispatcher);
     for (std::size_t i = 0; i < proxies.size(); ++i) {

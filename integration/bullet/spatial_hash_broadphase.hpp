@@ -355,6 +355,7 @@ private:
     void endProxy(Proxy& proxy, int uniqueId, std::uint64_t changeCount, btDispatcher* dispatcher);
     // By which it is told what callbacks have destroyed.
     static void noteIds(std::span<btBroadphaseProxy* const> proxies, std::vector<int>& ids);
+    static void checkNamedOnce(std::span<const int> ids);
     // Whether it, or a world beside it, calculates on this thread, and calls back.
     [[nodiscard]] bool isCalculating() const noexcept {
         return detail::QueryScope::isWithin(idCounter_);

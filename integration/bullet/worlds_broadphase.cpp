@@ -219,10 +219,13 @@ void WorldsBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxie
                  [this](btBroadphaseProxy* proxy) {
                      return !worldFor(proxy).checkedProxy(proxy)->id.isNull();
                  });
-    std::vector<std::pair<int, std::uint64_t>> noted;
-    noted.reserve(alive.size());
+    std::vector<int> ids;
+    World::noteIds(alive, ids);
+    World::checkNamedOnce(ids);
+    std::vector<std::uint64_t> changeCounts;
+    changeCounts.reserve(alive.size());
     for (const btBroadphaseProxy* const proxy : alive) {
-        noted.emplace_back(proxy->m_uniqueId, worldFor(proxy).cacheChangeCount_);
+        changeCounts.push_back(worldFor(proxy).cacheChangeCount_);
     }
     const detail::OnFailure fallBehind([&] {  // for nobody is destroyed
         for (const btBroadphaseProxy* const proxy : alive) {
@@ -231,8 +234,8 @@ void WorldsBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxie
     });
     pairCache_->removePairsOf(alive, dispatcher, PairCache::Remover::broadphase);
     for (std::size_t i = 0; i < alive.size(); ++i) {
-        worldFor(alive[i]).endProxy(static_cast<World::Proxy&>(*alive[i]), noted[i].first,
-                                    noted[i].second, dispatcher);
+        worldFor(alive[i]).endProxy(static_cast<World::Proxy&>(*alive[i]), ids[i], changeCounts[i],
+                                    dispatcher);
     }
 }
 

@@ -109,6 +109,11 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
     EXPECT_EQ(assertedBy([&] { static_cast<void>(std::as_const(boxes.worlds).world(2)); }), none);
     EXPECT_NE(assertedBy([&] { boxes.worlds.destroyProxy(nullptr, nullptr); }), "nothing");
     EXPECT_NE(assertedBy([&] { boxes.worlds.setAabbs({&proxy, 1}, {}, {}, nullptr); }), "nothing");
+    const std::array twice{proxy, proxy};
+    EXPECT_NE(assertedBy([&] {
+                  boxes.worlds.destroyProxies(twice, nullptr);
+              }).find("Each proxy is named once"),
+              std::string::npos);
     boxes.destroy(proxy);
     EXPECT_NE(assertedBy([&] { boxes.set(proxy, ManyWorlds::kPlace); }), "nothing");
     EXPECT_NE(assertedBy([&] { boxes.worlds.destroyProxies({&proxy, 1}, nullptr); }), "nothing");
