@@ -49,19 +49,30 @@ TEST(CallbacksOfEnds, FindNoPairsThatOutliveAProxyOnItsWayOut) {
         [](Ends& ends, btBroadphaseProxy* x) {
             ends.worlds.world(0).destroyProxies({&x, 1}, nullptr);
         }};
+    const auto nothing = [](Ends& /*ends*/) {};
+    const std::array<std::function<void(Ends&)>, 3> calculations{
+        nothing, [](Ends& ends) { ends.step(); },
+        [](Ends& ends) { ends.worlds.world(0).calculateOverlappingPairs(nullptr); }};
     for (const Destroy& destroy : ways) {
-        Ends ends;
-        btBroadphaseProxy* const x = ends.createIn(0, kPlace);
-        ends.createIn(0, kPlace);
-        btBroadphaseProxy* const eager = ends.createIn(0, kFar, ManyWorlds::kCharacter);
-        ends.step();
-        ends.onFirstEnd([&] { ends.set(eager, kPlace); });
-        destroy(ends, x);
-        std::erase(ends.proxies, x);
-        ends.check();
-        ends.set(eager, kFar);
-        ends.check();
-        EXPECT_TRUE(ends.list().empty());
+        for (const auto& calculate : calculations) {
+            Ends ends;
+            btBroadphaseProxy* const x = ends.createIn(0, kPlace);
+            ends.createIn(0, kPlace);
+            btBroadphaseProxy* const eager = ends.createIn(0, kFar, ManyWorlds::kCharacter);
+            btBroadphaseProxy* const plain = ends.createIn(0, kFar);
+            ends.step();
+            const bool isEager = &calculate == &calculations[0];
+            ends.onFirstEnd([&] {
+                ends.set(isEager ? eager : plain, kPlace);
+                calculate(ends);
+            });
+            destroy(ends, x);
+            std::erase(ends.proxies, x);
+            ends.check();
+            ends.set(isEager ? eager : plain, kFar);
+            ends.check();
+            EXPECT_EQ(ends.list().size(), 1U) << "the two that are far away";
+        }
     }
 }
 
