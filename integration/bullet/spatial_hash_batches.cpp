@@ -225,6 +225,7 @@ void SpatialHashBroadphase::noteIds(std::span<btBroadphaseProxy* const> proxies,
                                     std::vector<int>& ids) {
     ids.clear();
     for (const btBroadphaseProxy* const proxy : proxies) {
+        HASHPHASE_ASSERT(proxy != nullptr, "Only a proxy has an id.");
         ids.push_back(proxy->m_uniqueId);
     }
 }

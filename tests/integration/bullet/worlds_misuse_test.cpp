@@ -109,6 +109,12 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
     EXPECT_EQ(assertedBy([&] { static_cast<void>(std::as_const(boxes.worlds).world(2)); }), none);
     EXPECT_NE(assertedBy([&] { boxes.worlds.destroyProxy(nullptr, nullptr); }), "nothing");
     EXPECT_NE(assertedBy([&] { boxes.worlds.setAabbs({&proxy, 1}, {}, {}, nullptr); }), "nothing");
+    btBroadphaseProxy* const nobody = nullptr;
+    const btVector3 origin(0, 0, 0);
+    EXPECT_EQ(assertedBy([&] {
+                  boxes.worlds.setAabbs({&nobody, 1}, {&origin, 1}, {&origin, 1}, nullptr);
+              }),
+              "Only a proxy has an id.");
     const std::array twice{proxy, proxy};
     EXPECT_NE(assertedBy([&] {
                   boxes.worlds.destroyProxies(twice, nullptr);
