@@ -12,6 +12,7 @@
 // Batches   createProxies(), setAabbs() and destroyProxies() do what as many single calls do, at less cost.
 // Threads   Rays and aabbTest() are const in all but name: any number may run at the same time
 //           and inside each other. Everything else needs the broadphase for itself, as in Bullet.
+// Units     the world's; nothing depends on their size
 // Bad data  A box with a NaN makes no pair and is reported once (diagnostics.hpp). Infinite, huge and
 //           inverted boxes are treated exactly as comparing their coordinates says. NULL clients and NULL
 //           dispatchers are fine.
@@ -237,8 +238,8 @@ public:
     /// Frees the algorithms and contacts that the proxy's pairs have made from its shape, here and in the
     /// ghosts that list it; the pairs stay. Call it after a change of shape, scale, margin or other data by
     /// which contacts are made, beside btCollisionWorld::updateSingleAabb(), before the next step. A ghost callback
-    /// is told that each pair has ended and begun (an end that it brings about itself is told again); a cache with
-    /// deferred removal tells nothing. Cost: that of PairCache::renewPairsContainingProxy(); any other cache's all.
+    /// is told that each pair has ended and begun (of an end that it brings about itself twice); a cache with
+    /// deferred removal tells nothing. Cost: that of PairCache::renewPairsContainingProxy(), or of a pass over pairs.
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// Moves the origin of all coordinates to `shift`: subtracts it from the box of every proxy: see
@@ -428,7 +429,6 @@ private:
     int lastUniqueId_ = 0;
     detail::PeakWatch peaks_;  // of the cache
     std::uint16_t worldNumber_ = 0;
-
     bool groupsDecide_ = false;            // who may pair, and no callback
     bool mustNoteGroups_ = false;          // of all
     bool isCacheBehind_ = false;           // of changes that did not all reach it

@@ -78,8 +78,7 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
 std::size_t SpatialHashBroadphase::memoryBytes() const noexcept {
     return sizeof(*this) - sizeof(grid_) - sizeof(pairs_) + grid_.memoryBytes() +
            pairs_.memoryBytes() + proxies_.memoryBytes() +
-           (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) +
-           uniqueIds_.capacity() * sizeof(int) +
+           (sweeps_ != nullptr ? sweeps_->memoryBytes() : 0) + uniqueIds_.capacity() * sizeof(int) +
            (died_.capacity() + born_.capacity()) * sizeof(BulletProxyPair) +
            seen_.capacity() * sizeof(seen_[0]) +
            (ghosts_ != nullptr ? sizeof(*ghosts_) + ghosts_->memoryBytes() : 0) +

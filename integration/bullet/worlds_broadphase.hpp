@@ -25,7 +25,7 @@
 // Threads     Queries of all and of single worlds are const in all but name: any number may run at the same
 //             time. Everything else needs the broadphase, with all its worlds, for itself.
 // Callbacks, bad data, memory, misuse: as SpatialHashBroadphase, but shiftOrigin() cannot be repeated where memory
-//             ran out. calculateOverlappingPairs() is not called by its own callbacks (asserted).
+//             ran out. What no callback may call, none may call of another world either (asserted).
 
 #include <broadphase/core/peak_watch.hpp>
 #include <broadphase/query_cost.hpp>
