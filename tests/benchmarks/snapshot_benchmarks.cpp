@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 
-// What does it cost to save a grid or a Bullet world, and to go back, beside the frame itself? Everybody runs the
-// same frames, each in a world of his own.
+// What does it cost to save a grid or a Bullet world, and to go back, beside the frame itself? All take turns in one
+// world, as in a program: each first goes back to where the frame began, then runs it.
 //
-// Timed     `frame`: a frame. `save`: saving after it. `restore`: going back to where it ended, from some frames
+// Timed     `frame`: the frame. `save`: saving after it. `restore`: going back to where it ended, from some frames
 //           later, as netcode does.
 // Answers   are the pairs of the grid, or a hash of where all bodies are: as in a world that never goes back.
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kFramesBack = 8;
 
-/// What can be saved.
+/// A world, and what it goes back to.
 class Rolled : public Interface {
 public:
     virtual void advance() = 0;
@@ -31,46 +31,48 @@ public:
     virtual void stray(int frames) = 0;
     virtual void save() = 0;
     virtual void restore() = 0;
+    /// The same, but for where a frame began.
+    virtual void saveStart() = 0;
+    virtual void restoreStart() = 0;
     virtual void listState(std::vector<Answer>& answers) const = 0;
     [[nodiscard]] virtual std::size_t snapshotBytes() const = 0;
 };
 
 class SnapshotRunner final : public Runner {
 public:
-    SnapshotRunner(const ContestantKind& kind, std::unique_ptr<Rolled> rolled)
-        : saves_(kind.name == "save"),
-          restores_(kind.name == "restore"),
-          rolled_(std::move(rolled)) {}
+    SnapshotRunner(const ContestantKind& kind, Rolled& rolled)
+        : saves_(kind.name == "save"), restores_(kind.name == "restore"), rolled_(rolled) {}
 
     void prepare() override {
+        rolled_.restoreStart();
         if (saves_ || restores_) {
-            rolled_->advance();
+            rolled_.advance();
         }
         if (restores_) {
-            rolled_->save();
-            rolled_->stray(kFramesBack);
+            rolled_.save();
+            rolled_.stray(kFramesBack);
         }
     }
     void run() override {
         if (saves_) {
-            rolled_->save();
+            rolled_.save();
         } else if (restores_) {
-            rolled_->restore();
+            rolled_.restore();
         } else {
-            rolled_->advance();
+            rolled_.advance();
         }
     }
-    void listAnswers(std::vector<Answer>& answers) override { rolled_->listState(answers); }
+    void listAnswers(std::vector<Answer>& answers) override { rolled_.listState(answers); }
 
     [[nodiscard]] std::optional<OwnBytes> ownBytes() const override {
-        return saves_ || restores_ ? std::optional(OwnBytes{rolled_->snapshotBytes(), 0})
+        return saves_ || restores_ ? std::optional(OwnBytes{rolled_.snapshotBytes(), 0})
                                    : std::nullopt;
     }
 
 private:
     bool saves_;
     bool restores_;
-    std::unique_ptr<Rolled> rolled_;
+    Rolled& rolled_;
 };
 
 // --- A grid ---------------------------------------------------------------------------------------
@@ -92,6 +94,8 @@ public:
     }
     void save() override { snapshot_.save(pairs_); }
     void restore() override { snapshot_.restore(pairs_); }
+    void saveStart() override { start_.save(pairs_); }
+    void restoreStart() override { start_.restore(pairs_); }
     void listState(std::vector<Answer>& answers) const override {
         std::vector<ProxyPair> listed;
         pairs_.collect(listed);
@@ -118,6 +122,7 @@ private:
     Pairs<float> pairs_{grid_};
     std::vector<ProxyId> ids_;  // by object, which is its index
     GridSnapshot<float> snapshot_;
+    GridSnapshot<float> start_;
 };
 
 class GridSnapshots final : public Workload {
@@ -125,9 +130,12 @@ public:
     explicit GridSnapshots(std::unique_ptr<demos::BoxScene> scene) : scene_(std::move(scene)) {}
 
     [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
-        return std::make_unique<SnapshotRunner>(kind, std::make_unique<RolledGrid>(scene_));
+        return std::make_unique<SnapshotRunner>(kind, rolled_);
     }
-    void beginFrame() override { scene_.advance(); }
+    void beginFrame() override {
+        scene_.advance();
+        rolled_.saveStart();
+    }
     void listExactAnswers(std::vector<Answer>& answers) override {
         demos::findExactPairs(demos::ReferenceMethod::kSweep, scene_.boxes(), {}, answers);
     }
@@ -135,6 +143,7 @@ public:
 
 private:
     SceneBoxes scene_;
+    RolledGrid rolled_{scene_};
 };
 
 // --- A Bullet world -------------------------------------------------------------------------------
@@ -158,6 +167,8 @@ public:
     void stray(int frames) override { physics_.step(kStep, frames); }
     void save() override { refuseFault(snapshot_.save(physics_.world(), broadphase())); }
     void restore() override { refuseFault(snapshot_.restore(physics_.world(), broadphase())); }
+    void saveStart() override { refuseFault(start_.save(physics_.world(), broadphase())); }
+    void restoreStart() override { refuseFault(start_.restore(physics_.world(), broadphase())); }
     void listState(std::vector<Answer>& answers) const override {
         answers.assign(1, demos::stateHash(physics_.contents()));
     }
@@ -177,25 +188,27 @@ private:
 
     demos::PhysicsWorld physics_;
     WorldSnapshot snapshot_;
+    WorldSnapshot start_;
 };
 
 class WorldSnapshots final : public Workload {
 public:
     WorldSnapshots(const demos::WorldSceneKind& scene, std::size_t objects, std::uint64_t seed)
-        : scene_(scene), objects_(objects), seed_(seed), reference_(scene, objects, seed) {}
+        : objects_(objects), rolled_(scene, objects, seed), reference_(scene, objects, seed) {}
 
     [[nodiscard]] std::unique_ptr<Runner> make(const ContestantKind& kind) override {
-        return std::make_unique<SnapshotRunner>(
-            kind, std::make_unique<RolledWorld>(scene_, objects_, seed_));
+        return std::make_unique<SnapshotRunner>(kind, rolled_);
     }
-    void beginFrame() override { reference_.advance(); }
+    void beginFrame() override {
+        rolled_.saveStart();
+        reference_.advance();
+    }
     void listExactAnswers(std::vector<Answer>& answers) override { reference_.listState(answers); }
     [[nodiscard]] std::size_t objects() const override { return objects_; }
 
 private:
-    const demos::WorldSceneKind& scene_;
     std::size_t objects_;
-    std::uint64_t seed_;
+    RolledWorld rolled_;
     RolledWorld reference_;
 };
 
