@@ -4,6 +4,7 @@
 #include <broadphase/core/compiler.hpp>
 #include <integration/bullet/detail/algorithm_kind.hpp>
 #include <integration/bullet/detail/bullet_members.hpp>
+#include <integration/bullet/detail/owned_manifolds.hpp>
 
 #include <BulletCollision/CollisionDispatch/btHashedSimplePairCache.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
@@ -62,9 +63,7 @@ public:
     }
 
     void writeManifolds(btCollisionAlgorithm& algorithm) {
-        image_.found_.resizeNoInitialize(0);
-        algorithm.getAllContactManifolds(image_.found_);
-        write(image_.found_);
+        write(OwnedManifolds(algorithm).list());
     }
 
     void write(const btAlignedObjectArray<btPersistentManifold*>& manifolds) {
@@ -155,8 +154,7 @@ std::string ContactImage::end(const btCollisionDispatcher& dispatcher) {
 
 std::size_t ContactImage::memoryBytes() const noexcept {
     return sizeof(*this) + owned_.capacity() * sizeof(int) + heads_.capacity() * sizeof(Head) +
-           points_.capacity() * sizeof(btManifoldPoint) + manifolds_.capacity() * sizeof(void*) +
-           static_cast<std::size_t>(found_.capacity()) * sizeof(void*);
+           points_.capacity() * sizeof(btManifoldPoint) + manifolds_.capacity() * sizeof(void*);
 }
 
 }  // namespace hashphase::detail::inline HASHPHASE_BULLET_NAMESPACE

@@ -8,6 +8,7 @@
 #include <broadphase/core/ensure_capacity.hpp>
 #include <integration/bullet/detail/algorithm_kind.hpp>
 #include <integration/bullet/detail/bullet_members.hpp>
+#include <integration/bullet/detail/owned_manifolds.hpp>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btHashedSimplePairCache.h>
@@ -72,10 +73,9 @@ void freeQuietly(btCollisionAlgorithm* algorithm, btDispatcher* dispatcher) {
     if (algorithm == nullptr) {
         return;
     }
-    btManifoldArray manifolds;
-    algorithm->getAllContactManifolds(manifolds);
-    for (int i = 0; i < manifolds.size(); ++i) {
-        manifolds[i]->setNumContacts(0);
+    const OwnedManifolds owned(*algorithm);
+    for (int i = 0; i < owned.list().size(); ++i) {
+        owned.list()[i]->setNumContacts(0);
     }
     algorithm->~btCollisionAlgorithm();
     dispatcher->freeCollisionAlgorithm(algorithm);
@@ -130,10 +130,8 @@ private:
         return dispatcher_.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
     }
 
-    [[nodiscard]] int countManifolds(btCollisionAlgorithm& algorithm) {
-        found_.resizeNoInitialize(0);
-        algorithm.getAllContactManifolds(found_);
-        return found_.size();
+    [[nodiscard]] static int countManifolds(btCollisionAlgorithm& algorithm) {
+        return OwnedManifolds(algorithm).list().size();
     }
 
     [[nodiscard]] btCollisionAlgorithm* buildLeaf(btCollisionAlgorithm* present,
@@ -149,8 +147,7 @@ private:
                 runFarApart(*present, a, b);
             }
         }
-        static_cast<void>(countManifolds(*present));
-        take(found_, count);
+        take(OwnedManifolds(*present).list(), count);
         return present;
     }
 
@@ -208,36 +205,45 @@ private:
                 child};
     }
 
+    /// From the last to the `first`, so that no other one changes its place.
+    static void moveOutFrom(int first, btHashedSimplePairCache& cache, btSimplePairArray& to) {
+        while (cache.GetCount() > first) {
+            const btSimplePair last = cache.getOverlappingPairArray()[cache.GetCount() - 1];
+            to.push_back(last);
+            cache.removeOverlappingPair(last.m_indexA, last.m_indexB);
+        }
+    }
+
     void buildChildPairs(btCollisionAlgorithm& algorithm, const btCollisionObjectWrapper& a,
                          const btCollisionObjectWrapper& b) {
-        btHashedSimplePairCache& pairs = CompoundMembers::childPairs(algorithm);
-        btSimplePairArray present;
-        for (int k = 0; k < pairs.GetCount(); ++k) {
-            present.push_back(pairs.getOverlappingPairArray()[k]);
-        }
-        pairs.removeAllPairs();
+        btHashedSimplePairCache& cache = CompoundMembers::childPairs(algorithm);
+        const btSimplePairArray& pairs = cache.getOverlappingPairArray();
+        btSimplePairArray moved;
         const int count = next();
         for (int i = 0; i < count; ++i) {
             const int childOfA = next();
             const int childOfB = next();
-            btCollisionAlgorithm* child = nullptr;
-            for (int k = 0; k < present.size(); ++k) {
-                if (present[k].m_indexA == childOfA && present[k].m_indexB == childOfB) {
-                    child = static_cast<btCollisionAlgorithm*>(
-                        std::exchange(present[k].m_userPointer, nullptr));
+            if (i < pairs.size() &&
+                (pairs[i].m_indexA != childOfA || pairs[i].m_indexB != childOfB)) {
+                moveOutFrom(i, cache, moved);
+            }
+            btSimplePair& pair = *cache.addOverlappingPair(childOfA, childOfB);
+            for (int k = 0; k < moved.size(); ++k) {
+                if (moved[k].m_indexA == childOfA && moved[k].m_indexB == childOfB) {
+                    std::swap(pair.m_userPointer, moved[k].m_userPointer);
                 }
             }
-            btSimplePair* const pair = pairs.addOverlappingPair(childOfA, childOfB);
-            pair->m_userPointer = build(child, childOf(a, childOfA), childOf(b, childOfB));
+            pair.m_userPointer = build(static_cast<btCollisionAlgorithm*>(pair.m_userPointer),
+                                       childOf(a, childOfA), childOf(b, childOfB));
         }
-        for (int k = 0; k < present.size(); ++k) {
-            freeQuietly(static_cast<btCollisionAlgorithm*>(present[k].m_userPointer), &dispatcher_);
+        moveOutFrom(count, cache, moved);
+        for (int k = 0; k < moved.size(); ++k) {
+            freeQuietly(static_cast<btCollisionAlgorithm*>(moved[k].m_userPointer), &dispatcher_);
         }
     }
 
     const ContactImage& image_;
     btCollisionDispatcher& dispatcher_;
-    btManifoldArray found_;
 };
 
 void ContactImage::makeRoom() const {
@@ -272,9 +278,7 @@ btCollisionAlgorithm* ContactImage::restoreRetired(btCollisionDispatcher& dispat
     btCollisionAlgorithmConstructionInfo info(&dispatcher, 0);
     void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(RetiredAlgorithm));
     auto* const algorithm = new (memory) RetiredAlgorithm(info, count);
-    btManifoldArray manifolds;
-    algorithm->getAllContactManifolds(manifolds);
-    builder.take(manifolds, count);
+    builder.take(OwnedManifolds(*algorithm).list(), count);
     return algorithm;
 }
 

@@ -3,15 +3,13 @@
 // A frame like the last one takes no memory, what Bullet's own arrays take included.
 
 #include <tests/integration/bullet/boxes.hpp>
+#include <tests/integration/bullet/counted_bullet.hpp>
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
-#include <LinearMath/btAlignedAllocator.h>
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -20,13 +18,14 @@ namespace {
 
 class BulletAllocations : public testing::Test {
 protected:
-    BulletAllocations() { btAlignedAllocSetCustom(countedAllocate, std::free); }
-    ~BulletAllocations() override { btAlignedAllocSetCustom(nullptr, nullptr); }
     void SetUp() override {
         if (!kCountsAllocations) {
             GTEST_SKIP() << "this program has another `new`";
         }
     }
+
+private:
+    CountedBullet counted_;
 };
 
 /// Boxes that swing about where they began, each at its own pace; every fourth one stays there.

@@ -7,6 +7,7 @@
 
 #include <demos/scenes/hard_worlds.hpp>
 #include <demos/scenes/physics_world.hpp>
+#include <tests/integration/bullet/counted_bullet.hpp>
 #include <tests/integration/bullet/snapshot_worlds.hpp>
 
 #include <gtest/gtest.h>
@@ -138,6 +139,23 @@ TEST_P(WorldSnapshots, TakeTheSameStepsWhereTheyAreSent) {
         EXPECT_EQ(bytes, again);
         for (int step = 0; step < 40; ++step) {
             ASSERT_EQ(there.step(), here.step()) << "step " << step << " after " << steps;
+        }
+    }
+}
+
+TEST_P(WorldSnapshots, TakeNoMemoryInASteadyFrame) {
+    const CountedBullet counted;
+    SavedWorld world(GetParam().world, GetParam().order);
+    WorldSnapshot snapshot;
+    for (int step = 0; step < 60; ++step) {
+        static_cast<void>(world.step());
+        for (int round = 0; round < 2; ++round) {
+            const std::size_t before = allocationCount();
+            world.save(snapshot);
+            world.restore(snapshot);
+            if (round > 0) {
+                ASSERT_EQ(allocationCount(), before) << "step " << step;
+            }
         }
     }
 }
