@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,9 @@ struct Play {
     bool hasPairs = true;
     bool hasRays = false;
     GridConfig config{};
+
+    /// GoogleTest would print what lies between the members, too.
+    friend void PrintTo(const Play& play, std::ostream* out) { *out << play.name; }
 };
 
 template <class Scalar>
