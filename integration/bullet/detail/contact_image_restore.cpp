@@ -130,25 +130,24 @@ private:
         return dispatcher_.findAlgorithm(&a, &b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
     }
 
-    [[nodiscard]] static int countManifolds(btCollisionAlgorithm& algorithm) {
-        return OwnedManifolds(algorithm).list().size();
-    }
-
     [[nodiscard]] btCollisionAlgorithm* buildLeaf(btCollisionAlgorithm* present,
                                                   const btCollisionObjectWrapper& a,
                                                   const btCollisionObjectWrapper& b) {
         const int count = next();
-        if (present != nullptr && countManifolds(*present) != count) {
-            freeQuietly(std::exchange(present, nullptr), &dispatcher_);
-        }
-        if (present == nullptr) {
-            present = make(a, b);
-            if (countManifolds(*present) < count) {
-                runFarApart(*present, a, b);
+        if (present != nullptr) {
+            const OwnedManifolds owned(*present);
+            if (owned.list().size() == count) {
+                take(owned.list(), count);
+                return present;
             }
+            freeQuietly(present, &dispatcher_);
         }
-        take(OwnedManifolds(*present).list(), count);
-        return present;
+        btCollisionAlgorithm* const made = make(a, b);
+        if (OwnedManifolds(*made).list().size() < count) {
+            runFarApart(*made, a, b);
+        }
+        take(OwnedManifolds(*made).list(), count);
+        return made;
     }
 
     // Others make their manifold when they first run: with the two so far apart that they find no contact.
