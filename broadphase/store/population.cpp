@@ -190,12 +190,11 @@ void Population<Scalar>::dropLastRecords() {
     // First those that are in the list of changes, in which there is no room for others in their place. What
     // is appended last is given away first.
     for (const bool isInList : {false, true}) {
-        for (auto proxyIndex = proxyIndices.rbegin(); proxyIndex != proxyIndices.rend();
-             ++proxyIndex) {
-            if (isWaiting(records[*proxyIndex]) == isInList) {
-                append(*proxyIndex, free);
+        std::for_each(proxyIndices.rbegin(), proxyIndices.rend(), [&](std::uint32_t proxyIndex) {
+            if (isWaiting(records[proxyIndex]) == isInList) {
+                append(proxyIndex, free);
             }
-        }
+        });
     }
 }
 
