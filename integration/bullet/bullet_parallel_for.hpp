@@ -4,6 +4,10 @@
 // Runs the loops of the broadphase on the threads of Bullet's task scheduler: see btSetTaskScheduler().
 // Without a scheduler they run on the caller's thread. A Bullet built without threads (BT_THREADSAFE) has none
 // to offer, but takes a scheduler of the program's own.
+//
+// Keep what btCreateDefaultTaskScheduler() gave until the program ends. Its destructor at times writes a zero before
+// an array of its own, where there may be anything of the program's: btThreadSupportPosix::waitForResponse() takes
+// the end of a thread's earlier work for that of its present one, and then finds no thread that has ended.
 
 #include <broadphase/core/first_exception.hpp>
 #include <broadphase/parallel_for.hpp>

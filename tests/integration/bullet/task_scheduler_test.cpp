@@ -19,7 +19,6 @@
 #include <atomic>
 #include <chrono>
 #include <deque>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -54,9 +53,6 @@ private:
 class Scheduled {
 public:
     explicit Scheduled(btITaskScheduler* scheduler) { btSetTaskScheduler(scheduler); }
-    explicit Scheduled(std::unique_ptr<btITaskScheduler> scheduler) : own_(std::move(scheduler)) {
-        btSetTaskScheduler(own_.get());
-    }
     ~Scheduled() { btSetTaskScheduler(nullptr); }
     Scheduled(const Scheduled&) = delete;
     Scheduled& operator=(const Scheduled&) = delete;
@@ -64,14 +60,12 @@ public:
     [[nodiscard]] static int threadCount() {
         return btGetTaskScheduler() == nullptr ? 1 : btGetTaskScheduler()->getNumThreads();
     }
-
-private:
-    std::unique_ptr<btITaskScheduler> own_;
 };
 
-/// Null where Bullet was built without threads.
-std::unique_ptr<btITaskScheduler> bulletsThreads() {
-    std::unique_ptr<btITaskScheduler> scheduler(btCreateDefaultTaskScheduler());
+/// Null where Bullet was built without threads. It is never deleted: its destructor writes before the array of
+/// its threads when a thread that has finished once is at work again (btThreadSupportPosix::waitForResponse()).
+btITaskScheduler* bulletsThreads() {
+    static btITaskScheduler* const scheduler = btCreateDefaultTaskScheduler();
     if (scheduler != nullptr) {
         scheduler->setNumThreads(std::min(4, scheduler->getMaxNumThreads()));
     }
@@ -92,12 +86,13 @@ void underEachScheduler(const Test& test) {
     }
     {
         SCOPED_TRACE("a scheduler of the program's own");
-        const Scheduled scheduled(std::make_unique<OwnScheduler>());
+        OwnScheduler own;
+        const Scheduled scheduled(&own);
         test();
     }
-    if (auto threads = bulletsThreads()) {
+    if (btITaskScheduler* const threads = bulletsThreads()) {
         SCOPED_TRACE("Bullet's threads");
-        const Scheduled scheduled(std::move(threads));
+        const Scheduled scheduled(threads);
         test();
     }
 }
@@ -230,12 +225,12 @@ private:
 // Bullet's Mt classes want a scheduler; one with threads is safe with a Bullet that was built for threads.
 template <class Test>
 void onTheThreadsOfWorlds(const Test& test) {
-    auto threads = bulletsThreads();
+    btITaskScheduler* const threads = bulletsThreads();
     if (threads == nullptr) {
         const Scheduled scheduled(btGetSequentialTaskScheduler());
         test();
     } else {
-        const Scheduled scheduled(std::move(threads));
+        const Scheduled scheduled(threads);
         test();
     }
 }
