@@ -190,8 +190,9 @@ TEST(WorldSnapshot, TellsMotionStatesWhereTheirBodiesAre) {
         states[i].setWorldTransform(few.pool[i]->getWorldTransform());
         few.pool[i]->setMotionState(&states[i]);
     }
-    few.pool[1]->forceActivationState(ISLAND_SLEEPING);
     few.world.stepSimulation(btScalar(1) / 60, 0);
+    few.pool[1]->forceActivationState(
+        ISLAND_SLEEPING);  // in a step, it would be woken by what it touches
     WorldSnapshot snapshot;
     ASSERT_EQ(few.save(snapshot), "");
     const std::array<btTransform, 2> places{states[0].m_graphicsWorldTrans,
