@@ -10,6 +10,7 @@
 #include <broadphase/search/join.hpp>
 
 #include <algorithm>
+#include <bit>
 
 namespace hashphase::detail {
 
@@ -62,7 +63,7 @@ void forEachSwept(PairState<Scalar>& pairs, std::uint32_t proxyIndex, const Visi
     if (swept.bySecond.empty()) {
         std::vector<PairKey> turned(swept.atUpdate.size());
         std::transform(swept.atUpdate.begin(), swept.atUpdate.end(), turned.begin(),
-                       [](PairKey key) { return key << 32 | key >> 32; });
+                       [](PairKey key) { return std::rotl(key, 32); });
         pairs.sort(turned);
         swept.bySecond.swap(turned);
     }

@@ -86,7 +86,8 @@ void askFilter(PairState<Scalar>& pairs, PairFilter filter, ParallelFor parallel
         const QueryScope scope(&pairs.store, QueryScope::Changes::forbidden);
         filter(askedPairs, std::span(accepted).first(answers));
     }
-    for (std::size_t i = asked.size(); i-- > 0 && answers < asked.size();) {
+    for (std::size_t i = asked.size(); i > 0 && answers < asked.size();) {
+        --i;
         const std::uint32_t number = numberIfSampled(asked[i]);
         if (number != FlatSet::kNone) {
             accepted[i] = pile->sampledAccepted[number];

@@ -183,9 +183,8 @@ private:
                 isListed[index] = 1;
                 indices.push_back(index);
             }
-            for (std::size_t i = indices.size(); i-- > 0;) {
-                proxies.append(indices[i], *list);
-            }
+            std::for_each(indices.rbegin(), indices.rend(),
+                          [&](std::uint32_t index) { proxies.append(index, *list); });
         }
         for (std::uint32_t index = 0; index < proxies.records.size(); ++index) {
             const bool isUsedUp = proxies.records[index].generation == kLastGeneration;

@@ -84,7 +84,8 @@ private:
     }
     template <class IsGone>
     void eraseIf(const IsGone& isGone) noexcept {
-        for (std::size_t i = pairs_.size(); i-- > 0;) {
+        for (std::size_t i = pairs_.size(); i > 0;) {
+            --i;
             const ProxyPair pair = pairs_[i];
             if (isGone(pair)) {
                 erase(pair);

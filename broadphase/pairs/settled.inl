@@ -28,7 +28,8 @@ inline void listPairsOf(SettledPairs& settled, std::size_t entryCount) {
     }
     std::inclusive_scan(settled.firstOf.begin(), settled.firstOf.end(), settled.firstOf.begin());
     settled.pairsOf.resize(2 * settled.pairs.size());
-    for (auto i = static_cast<std::uint32_t>(settled.pairs.size()); i-- > 0;) {
+    for (auto i = static_cast<std::uint32_t>(settled.pairs.size()); i > 0;) {
+        --i;
         const auto [a, b] = settled.pairs.pairs()[i];
         settled.pairsOf[--settled.firstOf[a]] = i;
         settled.pairsOf[--settled.firstOf[b]] = i;

@@ -43,13 +43,12 @@ template <int kRows, class Scalar>
     return first;
 }
 
-// Tests what the runs have beyond their first boxes, and what has wrapped around. Returns how many boxes
-// were tested beyond those of the runs; of sorted buckets fewer are, and the number is negative, modulo 2^64.
+// Tests what the runs have beyond their first boxes, and what has wrapped around. `tested` counts all boxes of the
+// runs so far: of sorted buckets fewer are tested, and more of what has wrapped around.
 template <class Scalar, bool kIsDense, int kRows, class Query>
-[[HASHPHASE_ALWAYS_INLINE]] inline std::uint64_t joinRests(
+[[HASHPHASE_ALWAYS_INLINE]] inline void joinRests(
     const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query& query, std::uint32_t entry,
-    const Run* runs, bool wraps, PairSink& found) {
-    std::uint64_t tested = 0;
+    const Run* runs, bool wraps, PairSink& found, std::uint64_t& tested) {
     for (int k = 0; k < kRows; ++k) {
         const Run rest = {runs[k].first + kWidth, runs[k].last};
         if (rest.last > rest.first) {
@@ -61,7 +60,6 @@ template <class Scalar, bool kIsDense, int kRows, class Query>
         const Run rest = around.buckets(entry, k).wrapped(around.level);
         scan<true>(around.level, query, rest, Row{}, found, tested);
     }
-    return tested;
 }
 
 // Returns how many boxes were tested.
@@ -98,7 +96,7 @@ std::uint64_t joinEntry(const Neighbourhood<Scalar, kIsDense, kRows>& around, co
     found.next = next;
     std::uint64_t tested = first.candidates;
     if (first.longest >= kWidth || wraps) {
-        tested += joinRests(around, query, entry, runs, wraps, found);
+        joinRests(around, query, entry, runs, wraps, found, tested);
     }
     return tested;
 }

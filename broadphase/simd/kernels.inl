@@ -136,7 +136,8 @@ void overlapRows(const Scalar* corners, std::size_t stride, const std::uint32_t*
     for (std::size_t i = 0; i < count; ++i) {
         padCorners(corners + stride * indices[i], boxes[i]);
         std::uint32_t row = 0;
-        for (std::size_t k = i; k-- > 0;) {
+        for (std::size_t k = i; k > 0;) {
+            --k;
             row = 2 * row + (isApart(boxes[i], boxes[k]) ? 0 : 1);
         }
         rows[i] = row;

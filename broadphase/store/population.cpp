@@ -5,6 +5,7 @@
 #include <broadphase/core/limits.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace hashphase::detail {
 namespace {
@@ -116,7 +117,8 @@ void Population<Scalar>::giveBack(FreeList& list) noexcept {
 template <class Scalar>
 void Population<Scalar>::clear() noexcept {
     free = removed = removedImmediate = {};
-    for (auto proxyIndex = static_cast<std::uint32_t>(records.size()); proxyIndex-- > 0;) {
+    for (auto proxyIndex = static_cast<std::uint32_t>(records.size()); proxyIndex > 0;) {
+        --proxyIndex;
         const std::uint32_t generation = records[proxyIndex].generation;
         records[proxyIndex] = {};
         records[proxyIndex].generation = generation + (generation & 1);
@@ -142,11 +144,14 @@ void Population<Scalar>::clear() noexcept {
 template <class Scalar>
 void Population<Scalar>::dropWaiting() noexcept {
     waiting.clear();
-    if (++listNumber == 0) {  // nothing is left of those who have the numbers that come again
-        listNumber = 1;
-        for (Record<Scalar>& record : records) {
-            record.listedIn = 0;
-        }
+    if (listNumber < std::numeric_limits<decltype(listNumber)>::max()) {
+        ++listNumber;
+        return;
+    }
+    // Nothing is left of those who have the numbers that come again.
+    listNumber = 1;
+    for (Record<Scalar>& record : records) {
+        record.listedIn = 0;
     }
 }
 

@@ -57,7 +57,8 @@ void Simulation<Scalar>::declare(const SceneEffects& effects) {
     if (hasIndex && !keepsIndex) {
         index = makeIndex(effects.grid);
     }
-    for (std::size_t body = positions_.size(); !hasIndex && body-- > 0;) {
+    for (std::size_t body = hasIndex ? 0 : positions_.size(); body > 0;) {
+        --body;
         if (!isAlive(body)) {
             vacant.push_back(static_cast<std::uint32_t>(body));
         }

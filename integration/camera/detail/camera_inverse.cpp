@@ -55,11 +55,11 @@ std::optional<Matrix4<double>> inverseByPivots(Matrix4<double> matrix, double th
             }
         }
     }
-    for (std::size_t k = 4; k-- > 0;) {
+    std::for_each(pivots.rbegin(), pivots.rend(), [&](const auto& exchanged) {
         for (int i = 0; i < 4; ++i) {
-            std::swap(inverse(pivots[k].first, i), inverse(pivots[k].second, i));
+            std::swap(inverse(exchanged.first, i), inverse(exchanged.second, i));
         }
-    }
+    });
     return inverse;
 }
 
