@@ -24,32 +24,38 @@ protected:
                 lens.isReversed ? DepthOrder::reversed : DepthOrder::nearFirst};
     }
 
-    /// How far off a device coordinate may be, for the row of the matrix that makes it: as far as
-    /// rounding the point to Scalar may move it, four times, and the inverse in double.
-    static double doubtOf(const Matrix& matrix, int row, const Vector3<double>& point,
+    /// How far off a device coordinate may be, for the row of the matrix that makes it: as far as rounding the
+    /// two numbers that are added to Scalar may move it, four times, and the inverse in double. Where the ray
+    /// passes the origin, these are larger than their sum.
+    static double doubtOf(const Matrix& matrix, int row, const RayRegion<Scalar>& ray, Scalar share,
                           const Eigen::Vector4d& clip) {
         const Eigen::Matrix4d exact = matrix.template cast<double>();
         const double step = static_cast<double>(std::numeric_limits<Scalar>::epsilon()) *
-                                point.cwiseAbs().maxCoeff() * 4 +
+                                static_cast<double>(largestOf(ray, share)) * 4 +
                             1e-13 * exact.cwiseAbs().maxCoeff();
-        const double share = std::abs(clip[row] / clip.w());
-        return step * (exact.row(row).head<3>().norm() + share * exact.row(3).head<3>().norm()) /
+        const double ratio = std::abs(clip[row] / clip.w());
+        return step * (exact.row(row).head<3>().norm() + ratio * exact.row(3).head<3>().norm()) /
                    std::abs(clip.w()) +
                1e-9;
     }
 
-    static void expectSeenAt(const Camera<Scalar>& view, const Vector3<Scalar>& point,
+    static void expectSeenAt(const Camera<Scalar>& view, const RayRegion<Scalar>& ray, Scalar share,
                              const Pixel& pixel) {
-        const Vector3<double> exact = point.template cast<double>();
-        const Eigen::Vector4d clip = clipCoordinates(view.viewProjection(), exact);
+        const Vector3<Scalar> point = ray.from() + share * ray.direction();
+        const Eigen::Vector4d clip =
+            clipCoordinates(view.viewProjection(), point.template cast<double>());
         EXPECT_GT(clip.w(), 0);
         const Pixel found = pixelOf(clip, view.viewport());
         EXPECT_NEAR(found.x(), pixel.x(),
-                    kViewport.width / 2 * doubtOf(view.viewProjection(), 0, exact, clip));
+                    kViewport.width / 2 * doubtOf(view.viewProjection(), 0, ray, share, clip));
         EXPECT_NEAR(found.y(), pixel.y(),
-                    kViewport.height / 2 * doubtOf(view.viewProjection(), 1, exact, clip));
+                    kViewport.height / 2 * doubtOf(view.viewProjection(), 1, ray, share, clip));
     }
 
+    static Scalar largestOf(const RayRegion<Scalar>& ray, Scalar share) {
+        return std::max(ray.from().cwiseAbs().maxCoeff(),
+                        share * ray.direction().cwiseAbs().maxCoeff());
+    }
     static Vector3<Scalar> endOf(const RayRegion<Scalar>& ray) {
         return ray.from() + ray.direction();
     }
@@ -69,7 +75,7 @@ TYPED_TEST(Views, CastRaysFromTheNearPlaneToTheFarPlaneOfWhichEveryPointIsSeenAt
         const RayRegion<TypeParam> ray = view.rayThrough(pixel, 500);
         ASSERT_FALSE(ray.isEmpty());
         for (const TypeParam share : {TypeParam(0), TypeParam(0.25), TypeParam(1)}) {
-            this->expectSeenAt(view, ray.from() + share * ray.direction(), pixel);
+            this->expectSeenAt(view, ray, share, pixel);
         }
         const Vector3<double> from = ray.from().template cast<double>();
         const Vector3<double> to = this->endOf(ray).template cast<double>();
@@ -77,12 +83,12 @@ TYPED_TEST(Views, CastRaysFromTheNearPlaneToTheFarPlaneOfWhichEveryPointIsSeenAt
         const Eigen::Vector4d far = clipCoordinates(view.viewProjection(), to);
         const double least = lens.depthRange == DepthRange::zeroToOne ? 0 : -1;
         EXPECT_NEAR(near.z() / near.w(), lens.isReversed ? 1 : least,
-                    this->doubtOf(view.viewProjection(), 2, from, near) * 4);
+                    this->doubtOf(view.viewProjection(), 2, ray, 0, near) * 4);
         if (std::isinf(lens.farPlane)) {
             EXPECT_NEAR(far.w() - near.w(), 500, 0.02);
         } else {
             EXPECT_NEAR(far.z() / far.w(), lens.isReversed ? least : 1,
-                        this->doubtOf(view.viewProjection(), 2, to, far) * 4);
+                        this->doubtOf(view.viewProjection(), 2, ray, 1, far) * 4);
         }
         reversed += lens.isReversed ? 1 : 0;
     }
@@ -136,8 +142,8 @@ TYPED_TEST(Views, CastRaysFromObliqueNearPlanes) {
         ASSERT_FALSE(ray.isEmpty());
         const Eigen::Vector4d from = world * ray.from().template cast<double>().homogeneous();
         EXPECT_NEAR(plane.dot(from), 0, 1e-3);
-        this->expectSeenAt(view, ray.from(), pixel);
-        this->expectSeenAt(view, this->endOf(ray), pixel);
+        this->expectSeenAt(view, ray, 0, pixel);
+        this->expectSeenAt(view, ray, 1, pixel);
     }
 }
 
