@@ -110,7 +110,7 @@ template <class Scalar>
     pairs.cost.pairsWatched = watched.amongMobile.size() + watched.toResting.size();
     FewProxies<Scalar> few;
     listFewProxies(pairs, few);
-    pairs.cost.boxesTested = few.count * (few.count - 1) / 2;
+    pairs.cost.boxesTested = (few.count * few.count - few.count) / 2;
     for (std::uint32_t i = 0; i < few.count; ++i) {
         for (std::uint32_t turned = few.turned(i); turned != 0; turned &= turned - 1) {
             turnFew(pairs, few, i, static_cast<std::uint32_t>(std::countr_zero(turned)));

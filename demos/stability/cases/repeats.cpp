@@ -8,6 +8,7 @@
 #include <broadphase/radius_search.hpp>
 #include <broadphase/simd/kernels.hpp>
 #include <broadphase/sweeps.hpp>
+#include <demos/scenes/result_hash.hpp>
 #include <demos/stability/run_together.hpp>
 
 #include <array>
@@ -18,26 +19,6 @@ namespace hashphase::demos {
 namespace {
 
 using detail::InstructionSet;
-
-/// A number that changes with every bit of what it is given; FNV-1a, after Fowler, Noll and Vo.
-class Digest {
-public:
-    void add(std::uint64_t value) noexcept {
-        for (int byte = 0; byte < 8; ++byte) {
-            hash_ = (hash_ ^ (value >> (8 * byte) & 0xff)) * 0x100000001b3;
-        }
-    }
-    void add(std::span<const ProxyPair> pairs) noexcept {
-        add(pairs.size());
-        for (const ProxyPair& pair : pairs) {
-            add(pairKey(pair.first.index, pair.second.index));
-        }
-    }
-    [[nodiscard]] std::uint64_t value() const noexcept { return hash_; }
-
-private:
-    std::uint64_t hash_ = 0xcbf29ce484222325;
-};
 
 /// A ParallelFor on threads of its own.
 class OnThreads {
@@ -83,8 +64,8 @@ std::vector<Aabb<Scalar>> variedBoxes(std::size_t count, std::uint64_t seed) {
 
 // All that pairs, sweeps, rays, volumes and crowds say over some frames.
 template <class Scalar>
-std::uint64_t digestOfAll(std::size_t count, std::uint64_t seed, ParallelFor parallelFor) {
-    Digest digest;
+std::uint64_t hashOfAll(std::size_t count, std::uint64_t seed, ParallelFor parallelFor) {
+    ResultHash hash;
     Grid<Scalar> grid;
     Sweeps<Scalar> sweeps(grid);
     Pairs<Scalar> pairs(grid, &sweeps);
@@ -105,12 +86,12 @@ std::uint64_t digestOfAll(std::size_t count, std::uint64_t seed, ParallelFor par
             }
         }
         const PairChanges changes = pairs.update(all, parallelFor);
-        digest.add(changes.born);
-        digest.add(changes.died);
+        hash.addAll(changes.born);
+        hash.addAll(changes.died);
     }
     CollectClosest<Scalar> closest;
     grid.visit(RayRegion<Scalar>(boxes[0].min(), boxes[1].max()), closest);
-    digest.add(closest.found().index);
+    hash.add(closest.found().index);
     std::vector<std::uint64_t> bits;
     CollectBits seen(bits);
     const std::array<Eigen::Hyperplane<Scalar, 3>, 3> planes{
@@ -119,16 +100,16 @@ std::uint64_t digestOfAll(std::size_t count, std::uint64_t seed, ParallelFor par
          {Vector3<Scalar>(0, -1, 1), Scalar(2)}}};
     grid.visit(ConvexRegion<Scalar>(planes), seen);
     for (const std::uint64_t word : bits) {
-        digest.add(word);
+        hash.add(word);
     }
     RadiusSearch<Scalar> search;
     search.take(grid, 1, acceptAll, parallelFor);
     std::vector<std::uint32_t> counts(search.size());
     search.count(counts, parallelFor);
     for (std::uint32_t agent = 0; agent < search.size(); ++agent) {
-        digest.add(std::uint64_t{search.id(agent).index} << 32 | counts[agent]);
+        hash.add(std::uint64_t{search.id(agent).index} << 32 | counts[agent]);
     }
-    return digest.value();
+    return hash.value();
 }
 
 constexpr auto allInstructions = [](auto& run) {
@@ -145,9 +126,9 @@ constexpr auto allInstructions = [](auto& run) {
             continue;
         }
         detail::useInstructionSet(set);
-        const std::uint64_t digest = digestOfAll<Scalar>(count, run.seed, serialFor);
-        expected = tried.empty() ? digest : expected;
-        run.expect(digest == expected, "the answers are those of scalar code");
+        const std::uint64_t hash = hashOfAll<Scalar>(count, run.seed, serialFor);
+        expected = tried.empty() ? hash : expected;
+        run.expect(hash == expected, "the answers are those of scalar code");
         judgePairs(run, variedBoxes<Scalar>(1000, run.seed));
         tried += (tried.empty() ? "" : ", ") + std::string(detail::nameOf(set));
     }
@@ -195,14 +176,14 @@ constexpr auto anyOrder = [](auto& run) {
         return;
     }
     constexpr std::size_t kCount = 70'000;
-    const std::uint64_t alone = digestOfAll<Scalar>(kCount, run.seed, serialFor);
+    const std::uint64_t alone = hashOfAll<Scalar>(kCount, run.seed, serialFor);
     for (const std::size_t threads : {1U, 2U, 3U, 5U, 8U, 16U}) {
         // Loops are cut in the same way in both precisions.
         if (std::is_same_v<Scalar, double> && threads != 5 && threads != 16) {
             continue;
         }
         OnThreads parallel(threads);
-        run.expect(digestOfAll<Scalar>(kCount, run.seed, parallel) == alone,
+        run.expect(hashOfAll<Scalar>(kCount, run.seed, parallel) == alone,
                    "the answers on threads are those on one");
         run.expect(parallel.wereAllBusy(), "all threads have work");
     }
