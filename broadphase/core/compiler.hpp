@@ -142,6 +142,10 @@ namespace hashphase::detail {
 [[HASHPHASE_ALWAYS_INLINE]] inline void prefetch([[maybe_unused]] const void* address) noexcept {
 #if defined(__clang__) || defined(__GNUC__)
     __builtin_prefetch(address);
+#if !defined(__clang__)
+    // GCC takes a function that does nothing else for one without effects, and leaves out the calls of it.
+    __asm__ volatile("");
+#endif
 #elif defined(_M_X64) || defined(_M_IX86)
     _mm_prefetch(static_cast<const char*>(address), 1);  // _MM_HINT_T0
 #elif defined(_M_ARM64)
