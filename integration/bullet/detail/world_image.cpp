@@ -20,6 +20,8 @@ namespace {
 // Fetched while others are copied, or looked at: whole objects, and lines of the cache.
 constexpr std::size_t kObjectsAhead = 2;
 constexpr std::size_t kLinesAhead = 8;
+// Where most algorithms have their manifold [bytes], or just behind: that may be another line.
+constexpr std::size_t kManifoldOffset = 32;
 
 // Most objects are bodies.
 void prefetchBody(const btCollisionObject& object) {
@@ -29,7 +31,10 @@ void prefetchBody(const btCollisionObject& object) {
 // What is looked at of a pair: its algorithm, and the shapes of its clients.
 void prefetchAhead(std::span<const btBroadphasePair> pairs, std::size_t i) {
     const btBroadphasePair& far = pairs[std::min(i + 2 * kLinesAhead, pairs.size() - 1)];
-    prefetch(far.m_algorithm);
+    if (const void* const algorithm = far.m_algorithm) {
+        prefetch(algorithm);
+        prefetch(static_cast<const char*>(algorithm) + kManifoldOffset);
+    }
     prefetch(far.m_pProxy0);
     prefetch(far.m_pProxy1);
     const btBroadphasePair& near = pairs[std::min(i + kLinesAhead, pairs.size() - 1)];
