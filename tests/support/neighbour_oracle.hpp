@@ -32,8 +32,16 @@ template <class Scalar>
         };
         gaps[static_cast<std::size_t>(axis)] = std::max({0.0L, gap(a, b), gap(b, a)});
     }
-    // Not std::hypot(), which is NaN for infinity.
-    return std::sqrt(gaps[0] * gaps[0] + gaps[1] * gaps[1] + gaps[2] * gaps[2]);
+    // Squares of shares, so that none is 0 or infinite where long double is but double, as under Valgrind.
+    const long double largest = *std::max_element(gaps.begin(), gaps.end());
+    if (largest == 0 || std::isinf(largest)) {
+        return largest;
+    }
+    long double squares = 0;
+    for (const long double gap : gaps) {
+        squares += (gap / largest) * (gap / largest);
+    }
+    return largest * std::sqrt(squares);
 }
 
 /// The pairs found are those of the definition, each once. Boxes with NaN are near nothing.
