@@ -44,7 +44,7 @@ template <int kRows, class Scalar>
 }
 
 // Tests what the runs have beyond their first boxes, and what has wrapped around. `tested` counts all boxes of the
-// runs so far: of sorted buckets fewer are tested, and more of what has wrapped around.
+// runs when it is called; afterwards, those that were tested: fewer of sorted buckets, and what has wrapped around.
 template <class Scalar, bool kIsDense, int kRows, class Query>
 [[HASHPHASE_ALWAYS_INLINE]] inline void joinRests(
     const Neighbourhood<Scalar, kIsDense, kRows>& around, const Query& query, std::uint32_t entry,

@@ -191,8 +191,8 @@ TEST(WorldSnapshot, TellsMotionStatesWhereTheirBodiesAre) {
         few.pool[i]->setMotionState(&states[i]);
     }
     few.world.stepSimulation(btScalar(1) / 60, 0);
-    few.pool[1]->forceActivationState(
-        ISLAND_SLEEPING);  // in a step, it would be woken by what it touches
+    // Not before: in a step, it would be woken by what it touches.
+    few.pool[1]->forceActivationState(ISLAND_SLEEPING);
     WorldSnapshot snapshot;
     ASSERT_EQ(few.save(snapshot), "");
     const std::array<btTransform, 2> places{states[0].m_graphicsWorldTrans,
