@@ -361,5 +361,35 @@ TYPED_TEST(PairsOnThreads, OfAGridAloneAreFiledTheSame) {
     EXPECT_EQ(boxes.grid.validate(), "");
 }
 
+// Marks of who is in the list of changes are numbers that come round, after 255 lists.
+TEST(Pairs, FindWhoMovesAgainAfterAnyNumberOfUpdates) {
+    for (int pause = 250; pause <= 260; ++pause) {
+        SCOPED_TRACE(pause);
+        const Aabb<float> here(Vector3<float>(0, 0, 0), Vector3<float>(1, 1, 1));
+        const auto placed = [&](float x, float y) {
+            return here.translated(Vector3<float>(x, y, 0));
+        };
+        Grid<float> grid;
+        Pairs<float> pairs(grid);
+        std::vector<ProxyId> ids;
+        for (int i = 0; i < 200; ++i) {
+            ids.push_back(grid.add(placed(1.02F * static_cast<float>(i), 0)));
+        }
+        const ProxyId busy = grid.add(placed(0, 90));
+        for (int update = 0; update < 120 + pause; ++update) {
+            const float aside = update % 2 == 0 ? 0.005F : 0;
+            grid.move(busy, placed(20 * aside, 90));
+            for (int i = 0; i < 200 && update < 120; ++i) {  // they tremble, and then stay
+                grid.move(ids[std::size_t(i)], placed(1.02F * static_cast<float>(i), aside));
+            }
+            pairs.update();
+        }
+        grid.move(ids[0], placed(0.03F, 0));
+        const PairChanges changes = pairs.update();
+        ASSERT_EQ(changes.born.size(), 1U);
+        EXPECT_TRUE(changes.born[0] == makePair(ids[0], ids[1]));
+    }
+}
+
 }  // namespace
 }  // namespace hashphase::test
