@@ -15,6 +15,18 @@ namespace {
 
 using namespace hashphase::demos;
 
+/// Where some programs are not built, the end of the sentence that says so.
+std::string needs(const std::string& name) {
+    if (name == "hashphase-wander") {
+        return ", where libepoxy-dev, libstb-dev, libimgui-dev and libglfw3-dev (Debian, Ubuntu) "
+               "are installed.";
+    }
+    if (name == "hashphase-swarm") {
+        return ", where an MPI is installed (Debian, Ubuntu: libopenmpi-dev).";
+    }
+    return ".";
+}
+
 /// Runs the program in place of this one.
 int become(const std::string& name, std::vector<std::string> arguments, Console& console) {
     const std::filesystem::path path = programBeside(name);
@@ -22,10 +34,7 @@ int become(const std::string& name, std::vector<std::string> arguments, Console&
     if (!std::filesystem::exists(path, error)) {
         return refuse(
             console,
-            path.string() + " is not there. In the source tree demos/run builds it" +
-                (name == "hashphase-wander" ? ", where libepoxy-dev, libstb-dev, libimgui-dev and "
-                                              "libglfw3-dev (Debian, Ubuntu) are installed."
-                                            : "."));
+            path.string() + " is not there. In the source tree demos/run builds it" + needs(name));
     }
     try {
         return runInstead(path, std::move(arguments));

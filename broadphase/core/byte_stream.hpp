@@ -32,6 +32,12 @@ public:
         size_ -= most - static_cast<std::size_t>(write(begin) - begin);
     }
 
+    /// Replaces a number that was written `at` so many bytes from the beginning.
+    template <PlainNumber Number>
+    void rewrite(std::size_t at, Number number) noexcept {
+        std::memcpy(room_.data() + at, &number, sizeof(number));
+    }
+
     void clear() noexcept { size_ = 0; }
     [[nodiscard]] std::span<const std::byte> bytes() const noexcept {
         return std::span(room_).first(size_);

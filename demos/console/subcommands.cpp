@@ -32,6 +32,9 @@ constexpr std::array kSubcommands{
     Description{"try",
                 "Run a program of yours, as it is, with Bullet's broadphase and with ours, "
                 "and compare"},
+    Description{"swarm",
+                "Spread a million wandering spheres over the processes of an MPI program; "
+                "verify the pairs"},
     Description{"wander", "Watch the paper's simulation, and play with it"},
 };
 

@@ -22,6 +22,9 @@ namespace hashphase::demos {
 [[nodiscard]] int runInstead(const std::filesystem::path& program,
                              std::vector<std::string> arguments);
 
+/// Sets a variable for the programs that this one starts.
+void setEnvironment(const char* name, const char* value) noexcept;
+
 /// Keeps this thread on the core where it is: the scheduler moves threads, and caches do not move along.
 /// Where that is refused, times are a little less steady.
 void pinToThisCore() noexcept;

@@ -33,6 +33,10 @@ int runInstead(const std::filesystem::path& program, std::vector<std::string> ar
     throw std::system_error(errno, std::generic_category());
 }
 
+void setEnvironment(const char* name, const char* value) noexcept {
+    static_cast<void>(setenv(name, value, 1));
+}
+
 void pinToThisCore() noexcept {
 #if HASHPHASE_HAS_AFFINITY
     const int core = sched_getcpu();

@@ -58,6 +58,10 @@ int runInstead(const std::filesystem::path& program, std::vector<std::string> ar
     return static_cast<int>(code);
 }
 
+void setEnvironment(const char* name, const char* value) noexcept {
+    static_cast<void>(SetEnvironmentVariableA(name, value));
+}
+
 void pinToThisCore() noexcept {
     SetThreadAffinityMask(GetCurrentThread(), DWORD_PTR{1} << GetCurrentProcessorNumber() % 64);
 }

@@ -23,12 +23,13 @@ need() {
         case $part in
         bullet-files) libraries+=(libbullet-extras-dev) ;; # compare --file level.bullet
         charts) optional_tools+=(npm:npm) ;;               # pages have tables without
+        mpi) libraries+=(libopenmpi-dev) tools+=(mpirun:openmpi-bin) ;; # hashphase::mpi
         viewer)                                            # draws on the processor where there is no GPU
             optional_libraries+=(libtbb-dev libglfw3-dev libimgui-dev libepoxy-dev libstb-dev libegl1
                 libegl-mesa0 libgl1-mesa-dri)
             ;;
         tests) # rapidcheck makes up operations
-            need bullet-files charts viewer
+            need bullet-files charts mpi viewer
             libraries+=(libgtest-dev libtbb-dev libgmp-dev)
             optional_libraries+=(librapidcheck-dev)
             with_tests=ON

@@ -34,7 +34,7 @@ fast-unoptimised -O0 -ffast-math
 PROGRAMS
 }
 
-flags_link=(effects terrain picking culling camera ai broadphase)
+flags_link=(distributed effects terrain picking culling camera ai broadphase)
 
 # flags_compile <compiler> <source> <object> <option>...
 flags_compile() {

@@ -36,7 +36,7 @@ check_msvc() (
     cd "$root" || exit
     mkdir -p "$build"
     as_msvc -x c++-header "$headers/headers.hpp" -o "$build/headers.pch"
-    for component in broadphase ai bullet camera culling effects picking terrain; do
+    for component in broadphase ai bullet camera culling distributed effects picking terrain; do
         # One after another in one file, as in a quick build.
         folder=integration/$component
         [[ $component != broadphase ]] || folder=broadphase

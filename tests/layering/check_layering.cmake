@@ -10,6 +10,7 @@
 #                           integration/camera/ as well
 #   integration/bullet/     Bullet as well, and it alone
 #   integration/tbb/        oneTBB as well, and it alone
+#   integration/mpi/        integration/distributed/ and MPI as well, and it alone
 #   integration/effects/    the other clients as well
 #   integration/package/    whatever users include: its sources are their programs
 # What broadphase/ offers are the headers in the folder itself, and its helpers in core/ and geometry/. The
@@ -60,6 +61,10 @@ the standard library")
     elseif("${file}" MATCHES "^integration/tbb/")
         set(allowed "(${offered}|(integration/tbb|tbb)/.+|${standard})")
         set(rule "integration/tbb/ includes only itself, broadphase/, oneTBB and the standard library")
+    elseif("${file}" MATCHES "^integration/mpi/")
+        set(allowed "(${offered}|integration/(distributed|mpi)/.+|mpi\\.h|${eigen}|${standard})")
+        set(rule "integration/mpi/ includes only itself, integration/distributed/, broadphase/, MPI, Eigen and \
+the standard library")
     elseif("${file}" MATCHES "^integration/package/")
         set(allowed "(${offered}|integration/.+|${bullet}|${eigen}|${standard})")
         set(rule "integration/package/ includes only what users of hashphase include")

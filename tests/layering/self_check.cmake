@@ -36,6 +36,9 @@ function(make_good_tree)
          "#include <broadphase/core/limits.hpp>\n")
     file(WRITE ${SCRATCH}/integration/tbb/loops.hpp
          "#include <tbb/parallel_for.h>\n#include <broadphase/parallel_for.hpp>\n")
+    file(WRITE ${SCRATCH}/integration/distributed/partition.hpp "#include <broadphase/aabb.hpp>\n")
+    file(WRITE ${SCRATCH}/integration/mpi/exchange.hpp
+         "#include <integration/distributed/partition.hpp>\n#include <mpi.h>\n")
     file(WRITE ${SCRATCH}/integration/effects/plan.cpp
          "#include <integration/picking/pick.hpp>\n#include <cstdint>\n")
     file(WRITE ${SCRATCH}/demos/main.cpp "#include \"scene.hpp\"\n#include <CLI/CLI.hpp>\n")
@@ -70,6 +73,10 @@ if(NOT status EQUAL 0)
     message(FATAL_ERROR "A tree that keeps every rule was refused:\n${output}")
 endif()
 
+expect_breach(integration/distributed/partition.hpp 2 "integration/distributed/ includes only itself"
+              "#include <mpi.h>\n")
+expect_breach(integration/mpi/exchange.hpp 3 "integration/mpi/ includes only itself"
+              "#include <integration/ai/sight.hpp>\n")
 set(core "broadphase/ includes only itself")
 expect_breach(broadphase/grid.hpp 4 "${core}" "#include <integration/picking/pick.hpp>\n")
 expect_breach(broadphase/grid.hpp 4 "${core}" "#include <btBulletCollisionCommon.h>\n")

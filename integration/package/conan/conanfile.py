@@ -18,6 +18,8 @@ required_conan_version = ">=2.0"
 
 REPOSITORY = os.path.join("..", "..", "..")
 CLIENTS = {"ai": [], "camera": [], "culling": ["camera"], "picking": ["camera"], "terrain": []}
+# hashphase::mpi is built where there is a cluster's own MPI, not here.
+ALONE = ("distributed",)
 
 
 class HashphaseConan(ConanFile):
@@ -57,6 +59,7 @@ class HashphaseConan(ConanFile):
         toolchain.cache_variables["CMAKE_DISABLE_FIND_PACKAGE_PkgConfig"] = True
         toolchain.cache_variables["HASHPHASE_BUILD_DEMOS"] = False
         toolchain.cache_variables["HASHPHASE_BUILD_TESTS"] = False
+        toolchain.cache_variables["HASHPHASE_MPI"] = "OFF"
         toolchain.cache_variables["HASHPHASE_WARNINGS_AS_ERRORS"] = False
         toolchain.cache_variables["CMAKE_DEBUG_POSTFIX"] = ""  # a package for each build type
         # Whoever compiles against the package is told the same (package_info).
@@ -88,6 +91,8 @@ class HashphaseConan(ConanFile):
         for client, others in CLIENTS.items():
             self._add_library(client, ["broadphase", *others])
         self._add_library("effects", list(CLIENTS))
+        for client in ALONE:
+            self._add_library(client, ["broadphase"])
         is_double = self.dependencies["bullet3"].options.get_safe("double_precision")
         bullet = "bullet-float64" if is_double else "bullet"
         self._add_library(bullet, ["broadphase", "bullet3::bullet3"])

@@ -18,6 +18,7 @@ vcpkg_cmake_configure(
         -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON
         -DHASHPHASE_BUILD_DEMOS=OFF
         -DHASHPHASE_BUILD_TESTS=OFF
+        -DHASHPHASE_MPI=OFF
 )
 vcpkg_cmake_install()
 vcpkg_copy_pdbs()

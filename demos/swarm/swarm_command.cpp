@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/swarm/swarm_command.hpp>
+
+#include <demos/console/format.hpp>
+#include <demos/console/options.hpp>
+#include <demos/console/progress.hpp>
+#include <demos/console/result_file.hpp>
+#include <demos/report/provenance.hpp>
+#include <demos/report/report_text.hpp>
+#include <demos/swarm/scaling_plan.hpp>
+#include <demos/swarm/swarm_files.hpp>
+#include <demos/swarm/swarm_report.hpp>
+#include <demos/swarm/swarm_run.hpp>
+#include <demos/system/process.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iostream>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace hashphase::demos {
+namespace {
+
+struct SwarmOptions {
+    std::string scene{swarmKinds().front().name};
+    std::uint64_t objects = 1'000'000;
+    std::uint32_t frames = 100;
+    std::uint32_t ranks = 0;  // 0: as many as there are
+    std::uint64_t seed = 1;
+    double rebalanceAbove = 1.1;
+    double patience = 120;  // [s]
+    std::string vtkFolder;  // empty: none
+    std::uint32_t vtkEvery = 10;
+    std::string csvFile;
+    bool unchecked = false;
+    bool quiet = false;
+    bool list = false;
+    bool plan = false;
+};
+
+void declareSwarm(CLI::App& app, SwarmOptions& options) {
+    app.add_option("--scene", options.scene, "population (see --list)")->capture_default_str();
+    app.add_option("--objects", options.objects, "number of spheres")
+        ->transform(wholeFrom(10, 4'000'000'000U))
+        ->capture_default_str();
+    app.add_option("--frames", options.frames, "number of frames")
+        ->transform(wholeFrom(1, 1'000'000))
+        ->capture_default_str();
+    app.add_option(
+           "--ranks", options.ranks,
+           "start so many processes, by mpirun (default: those that mpirun has started, or one)")
+        ->transform(wholeFrom(1, 100'000));
+    app.add_option("--seed", options.seed, "seed of the population")->transform(seedUpTo());
+    app.add_option("--rebalance-above", options.rebalanceAbove,
+                   "cut space again when the most loaded rank has more than this times the mean")
+        ->check(CLI::Range(1.0, 1e6))
+        ->capture_default_str();
+    app.add_option("--patience", options.patience,
+                   "give up after waiting for a rank so many seconds")
+        ->transform(positiveSeconds())
+        ->capture_default_str();
+    addFolderToWrite(app, "--vtk", options.vtkFolder,
+                     "write files for ParaView to this folder: open swarm.pvd and regions.pvd");
+    app.add_option("--vtk-every", options.vtkEvery, "write those of every so many frames")
+        ->transform(wholeFrom(1, 1'000'000))
+        ->capture_default_str();
+    addFileToWrite(app, "--csv", options.csvFile,
+                   "write a row for each frame and rank to this file");
+    app.add_flag("--unchecked", options.unchecked,
+                 "do not run the same in one process to compare pairs and times");
+    app.add_flag("--plan", options.plan,
+                 "count what 64 to 16,384 ranks would tell each other, and run nothing");
+    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+    app.add_flag("--list", options.list, "say which populations there are");
+}
+
+SwarmKind chosenKind(const std::string& name) {
+    std::vector<std::string> known;
+    for (const SwarmKindName& each : swarmKinds()) {
+        if (each.name == name) {
+            return each.kind;
+        }
+        known.emplace_back(each.name);
+    }
+    throw InputError(unknownNameSentence("population", name, known));
+}
+
+void printList(std::ostream& out) {
+    out << "Populations:\n";
+    for (const SwarmKindName& each : swarmKinds()) {
+        out << "  " << each.name << std::string(13 - each.name.size(), ' ') << each.description
+            << '\n';
+    }
+}
+
+int printPlan(const SwarmOptions& options, Console& console) {
+    const SwarmKind kind = chosenKind(options.scene);
+    const MachineModel model;
+    const std::vector<PlanSize> sizes = plannedSizes();
+    std::vector<PlannedFrame> frames;
+    {
+        Progress progress(console.err, progressStyle(console, options.quiet), "plan", sizes.size());
+        for (const PlanSize& size : sizes) {
+            frames.push_back(planFrame(kind, options.seed, size, model));
+            progress.update(frames.size());
+        }
+    }
+    console.out << "What a rank has to do in a frame, on average, counted over random spheres ("
+                << options.scene << "):\n";
+    printTable(planTable(frames), console.out);
+    console.out << "Times by a model: " << model.objectNanoseconds << " ns a sphere, "
+                << model.ghostNanoseconds << " ns a ghost, " << model.messageMicroseconds
+                << " us a message sent or taken, " << model.stepMicroseconds
+                << " us for each of log2(ranks) steps of a barrier and two sums, "
+                << model.bytesPerNanosecond << " GB/s a rank.\n";
+    for (const std::string& sentence : planSentences(frames)) {
+        console.out << sentence << '\n';
+    }
+    return kExitOk;
+}
+
+constexpr const char* kRankVariables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK",
+                                          "SLURM_PROCID"};
+
+bool isStartedByMpirun() {
+    return std::ranges::any_of(kRankVariables,
+                               [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
+/// Runs this program under mpirun in place of this process.
+int runUnderMpirun(const SwarmOptions& options, const std::vector<std::string>& arguments,
+                   Console& console) {
+    // What Open MPI wants to be asked for: to run as root in a container, and more ranks than cores.
+    for (const char* name : {"OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM",
+                             "OMPI_MCA_rmaps_base_oversubscribe"}) {
+        setEnvironment(name, "1");
+    }
+    std::vector<std::string> all{"-n", std::to_string(options.ranks),
+                                 programBeside("hashphase-swarm").string()};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    try {
+        return runInstead(HASHPHASE_MPIEXEC, std::move(all));
+    } catch (const std::system_error& failure) {
+        return refuse(console, std::string(HASHPHASE_MPIEXEC) +
+                                   " cannot be run: " + failure.code().message() +
+                                   ". It comes with Open MPI (Debian, Ubuntu: openmpi-bin).");
+    }
+}
+
+/// MPI from the beginning to the end of a run; where that has failed, all processes end.
+class MpiSession {
+public:
+    MpiSession() {
+        MPI_Init(nullptr, nullptr);
+        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+        MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    }
+    MpiSession(const MpiSession&) = delete;
+    MpiSession& operator=(const MpiSession&) = delete;
+    ~MpiSession() {
+        if (hasFailed) {
+            MPI_Abort(MPI_COMM_WORLD, kExitUsage);
+        }
+        MPI_Finalize();
+    }
+
+    int rank = 0;
+    int ranks = 1;
+    bool hasFailed = false;
+};
+
+SwarmResult runAllRanks(const SwarmScene& scene, const SwarmOptions& options, Console& console,
+                        const MpiSession& mpi) {
+    DistributedConfig config;
+    config.rebalanceAbove = options.rebalanceAbove;
+    config.patience = options.patience;
+    SwarmFiles files(options.vtkFolder, static_cast<std::uint32_t>(mpi.rank), scene.side());
+    meet(MPI_COMM_WORLD);  // the folder is there
+    Progress progress(console.err, progressStyle(console, options.quiet || mpi.rank != 0), "swarm",
+                      options.frames);
+    SwarmResult result = runSwarm(MPI_COMM_WORLD, scene, options.frames, config,
+                                  [&](std::uint32_t frame, const DistributedGrid<float>& grid) {
+                                      if (frame % options.vtkEvery == 0) {
+                                          files.write(frame, grid.here());
+                                      }
+                                      progress.update(frame + 1);
+                                  });
+    files.finish();
+    return result;
+}
+
+std::optional<SingleResult> runToCompare(const SwarmScene& scene, const SwarmOptions& options,
+                                         Console& console, const MpiSession& mpi) {
+    std::optional<SingleResult> alone;
+    if (!options.unchecked && mpi.rank == 0) {
+        Progress progress(console.err, progressStyle(console, options.quiet), "one process",
+                          options.frames);
+        alone = runAlone(scene, options.frames,
+                         [&](std::uint32_t frame) { progress.update(frame + 1); });
+    }
+    meet(MPI_COMM_WORLD);
+    return alone;
+}
+
+int report(const SwarmResult& result, const std::optional<SingleResult>& alone,
+           const Provenance& provenance, ResultFile& csv, std::ostream& out) {
+    printSwarm(result, alone, out);
+    csv.write([&](std::ostream& file) { writeCsv(framesTable(result), file); });
+    printProvenance(provenance, out);
+    if (!alone) {
+        out << "Not compared with one process.\n";
+        return kExitOk;
+    }
+    const std::string difference = differenceOf(result, *alone);
+    out << (difference.empty()
+                ? "Births and deaths of every frame, and all " + withThousands(result.last.count) +
+                      " pairs of the last, are those of one process, each once."
+                : "WRONG: " + difference)
+        << '\n';
+    return difference.empty() ? kExitOk : kExitCheckFailed;
+}
+
+int runRank(const SwarmOptions& options, SwarmKind kind, Console& console, const MpiSession& mpi) {
+    const bool isFirst = mpi.rank == 0;
+    if (options.ranks != 0 && options.ranks != static_cast<std::uint32_t>(mpi.ranks)) {
+        throw InputError("--ranks says " + std::to_string(options.ranks) +
+                         ", but mpirun has started " + std::to_string(mpi.ranks) + ".");
+    }
+    ResultFile csv(isFirst ? options.csvFile : std::string());
+    const Provenance provenance = gatherProvenance(console.commandLine);
+    const SwarmScene scene(kind, options.objects, options.seed);
+    if (isFirst) {
+        console.out << withThousands(options.objects) << " spheres (" << options.scene << "), "
+                    << options.frames << " frames on " << mpi.ranks
+                    << (mpi.ranks == 1 ? " rank\n" : " ranks\n") << std::flush;
+    }
+    const SwarmResult result = runAllRanks(scene, options, console, mpi);
+    const auto alone = runToCompare(scene, options, console, mpi);
+    return isFirst ? report(result, alone, provenance, csv, console.out) : kExitOk;
+}
+
+/// Whoever knows more than the others says it, and rank 0 what all know.
+void tellFault(int rank, const std::string& sentence) {
+    const bool isOwn = sentence.starts_with("Rank " + std::to_string(rank) + " of ");
+    if (rank == 0 || isOwn) {
+        std::cerr << "hashphase: " + sentence + "\n" << std::flush;
+    }
+}
+
+int runSwarmCommand(const SwarmOptions& options, const std::vector<std::string>& arguments,
+                    Console& console) {
+    if (options.list) {
+        printList(console.out);
+        return kExitOk;
+    }
+    if (options.plan) {
+        return printPlan(options, console);
+    }
+    const SwarmKind kind = chosenKind(options.scene);
+    if (options.ranks != 0 && !isStartedByMpirun()) {
+        return runUnderMpirun(options, arguments, console);
+    }
+    MpiSession mpi;
+    try {
+        return runRank(options, kind, console, mpi);
+    } catch (const RankError& error) {
+        tellFault(mpi.rank, error.what());
+    } catch (const std::exception& error) {
+        std::cerr << "hashphase: " + std::string(error.what()) + " (on rank " +
+                         std::to_string(mpi.rank) + ")\n"
+                  << std::flush;
+    }
+    mpi.hasFailed = true;
+    return kExitUsage;
+}
+
+}  // namespace
+
+Subcommand swarmCommand(const std::vector<std::string>& arguments) {
+    return makeSubcommand<SwarmOptions>("swarm", declareSwarm,
+                                        [arguments](const auto& options, Console& console) {
+                                            return runSwarmCommand(options, arguments, console);
+                                        });
+}
+
+int rankByEnvironment() noexcept {
+    for (const char* name : kRankVariables) {
+        if (const char* value = std::getenv(name)) {
+            return std::atoi(value);
+        }
+    }
+    return 0;
+}
+
+}  // namespace hashphase::demos

@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// What ranks tell each other: pack(), and the reading of parcels in finish().
+//
+// A parcel is a head (kMagic, its bytes, the frame, the number of entries), and entries. An entry:
+//   kind      1 byte, of the bits below
+//   id        8 bytes
+//   box       now; not where the object was removed
+//   home      4 bytes, where that has changed
+//   groups    8 bytes, for a new ghost
+//   box       before, for a new ghost of what is not new itself
+//   payload   for a new ghost, and where it has changed
+
+#include <integration/distributed/rank_grid.hpp>
+
+#include <broadphase/diagnostics.hpp>
+
+#include <algorithm>
+
+namespace hashphase {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x68706d31;  // "hpm1"
+constexpr std::size_t kSizeAt = 4;
+constexpr std::size_t kCountAt = 20;
+
+// How many objects ahead memory is fetched.
+constexpr std::size_t kAhead = 8;
+
+constexpr unsigned kTellNew = 1;      // the receiver has no ghost of it yet
+constexpr unsigned kTellLeaves = 2;   // the object does not touch the receiver's region any more
+constexpr unsigned kTellRemoved = 4;  // the object is nowhere any more
+constexpr unsigned kTellBorn = 8;     // kTellNew, and the object was nowhere before
+constexpr unsigned kTellHome = 16;    // the object lives on another rank from now on
+constexpr unsigned kTellPayload = 32;
+constexpr unsigned kTellAll = 63;
+
+constexpr bool isKind(unsigned kind) {
+    const bool isNew = (kind & kTellNew) != 0;
+    const bool isKnown = (kind & (kTellLeaves | kTellRemoved)) != 0;
+    return kind <= kTellAll && !(isNew && isKnown) && (isNew || (kind & kTellBorn) == 0);
+}
+
+template <class Scalar>
+void writeBox(detail::ByteWriter& writer, const Aabb<Scalar>& box) {
+    writer.write(box.min().data(), 3 * sizeof(Scalar));
+    writer.write(box.max().data(), 3 * sizeof(Scalar));
+}
+
+template <class Scalar>
+Aabb<Scalar> readBox(detail::ByteReader& reader) {
+    Aabb<Scalar> box;
+    reader.read(box.min().data(), 3 * sizeof(Scalar));
+    reader.read(box.max().data(), 3 * sizeof(Scalar));
+    return box;
+}
+
+[[noreturn]] void raiseBadParcel(const Parcel& parcel, const std::string& fault) {
+    throw RankError("What rank " + std::to_string(parcel.rank) + " has sent " + fault);
+}
+
+}  // namespace
+
+// --- Telling -------------------------------------------------------------------------------------
+
+template <class Scalar>
+std::span<const Parcel> RankGrid<Scalar>::pack() {
+    HASHPHASE_ASSERT(!isPacked_, "pack() is called once a frame, finish() comes after it.");
+    if (isPacked_) {
+        return parcels_;
+    }
+    for (const std::uint32_t rank : destinations_) {
+        writers_[rank].clear();
+        entryCounts_[rank] = 0;
+    }
+    destinations_.clear();
+    parcels_.clear();
+    if (isPartitionNew_) {
+        touchForPartition();
+    }
+    for (std::size_t i = 0; i < touched_.size(); ++i) {
+        if (i + kAhead < touched_.size()) {
+            prefetch(touched_[i + kAhead]);
+        }
+        packObject(touched_[i]);
+    }
+    // The heads, when the numbers are known.
+    std::sort(destinations_.begin(), destinations_.end());
+    cost_ = {};
+    for (const std::uint32_t rank : destinations_) {
+        detail::ByteWriter& writer = writers_[rank];
+        writer.rewrite(kSizeAt, std::uint64_t{writer.bytes().size()});
+        writer.rewrite(kCountAt, entryCounts_[rank]);
+        parcels_.push_back({rank, writer.bytes()});
+        cost_.entriesSent += entryCounts_[rank];
+        cost_.bytesSent += writer.bytes().size();
+    }
+    cost_.parcelsSent = parcels_.size();
+    isPacked_ = true;
+    return parcels_;
+}
+
+template <class Scalar>
+void RankGrid<Scalar>::packObject(std::uint32_t index) {
+    const unsigned marks = marks_[index];
+    const bool isRemoved = (marks & kRemoved) != 0;
+    if ((marks & (kOwned | kRemoved)) == 0) {
+        return;  // added and removed again
+    }
+    const ProxyId id = grid_.idAt(index);
+    keepBefore(index);
+    ranksBefore_.clear();
+    ranksNow_.clear();
+    if ((marks & kBorn) == 0) {
+        lastPartition_.forEachRank(befores_[index],
+                                   [&](std::uint32_t rank) { ranksBefore_.push_back(rank); });
+    }
+    bool hasMoved = false;
+    if (!isRemoved) {
+        const Box& now = grid_.box(id);
+        partition_.forEachRank(now, [&](std::uint32_t rank) { ranksNow_.push_back(rank); });
+        homes_[index] = ranksNow_.empty() ? rank_ : partition_.rankOf(now.min());
+        hasMoved = homes_[index] != rank_;
+    }
+    const unsigned forAll = (isRemoved ? kTellRemoved : 0U) | (hasMoved ? kTellHome : 0U);
+    const bool isSame =
+        !isRemoved && isSameBits(befores_[index], grid_.box(id)) && (marks & kPayload) == 0;
+    auto before = ranksBefore_.begin();
+    for (const std::uint32_t rank : ranksNow_) {
+        for (; before != ranksBefore_.end() && *before < rank; ++before) {
+            tell(*before, index, forAll | kTellLeaves);
+        }
+        const bool isKnown = before != ranksBefore_.end() && *before == rank;
+        before += isKnown ? 1 : 0;
+        if (rank == rank_) {
+            marks_[index] |= kStaysHere;
+        } else if (!isKnown) {
+            tell(rank, index, forAll | kTellNew | ((marks & kBorn) != 0 ? kTellBorn : 0U));
+        } else if (hasMoved || !isSame) {
+            tell(rank, index, forAll);
+        }
+    }
+    for (; before != ranksBefore_.end(); ++before) {
+        tell(*before, index, forAll | (isRemoved ? 0U : kTellLeaves));
+    }
+}
+
+template <class Scalar>
+void RankGrid<Scalar>::tell(std::uint32_t rank, std::uint32_t index, unsigned kind) {
+    if (rank == rank_) {
+        return;
+    }
+    detail::ByteWriter& writer = writers_[rank];
+    if (entryCounts_[rank]++ == 0) {
+        destinations_.push_back(rank);
+        writer.write(kMagic);
+        writer.write(std::uint64_t{0});  // at kSizeAt, when it is known
+        writer.write(frame_);
+        writer.write(std::uint32_t{0});  // at kCountAt
+    }
+    const ProxyId id = grid_.idAt(index);
+    const bool isNew = (kind & kTellNew) != 0;
+    const bool hasPayload = config_.payloadBytes > 0 &&
+                            (isNew || (marks_[index] & kPayload) != 0) &&
+                            (kind & (kTellRemoved | kTellLeaves)) == 0;
+    kind |= hasPayload ? kTellPayload : 0U;
+    writer.write(static_cast<std::uint8_t>(kind));
+    writer.write(globalIds_[index].value);
+    if ((kind & kTellRemoved) == 0) {
+        writeBox(writer, grid_.box(id));
+    }
+    if ((kind & kTellHome) != 0) {
+        writer.write(homes_[index]);
+    }
+    if (isNew) {
+        const ProxyGroups groups = grid_.groups(id);
+        writer.write(groups.group);
+        writer.write(groups.mask);
+        if ((kind & kTellBorn) == 0) {
+            writeBox(writer, befores_[index]);
+        }
+    }
+    if (hasPayload) {
+        writer.write(payloads_.data() + std::size_t{index} * config_.payloadBytes,
+                     config_.payloadBytes);
+    }
+}
+
+// --- Being told ----------------------------------------------------------------------------------
+
+template <class Scalar>
+void RankGrid<Scalar>::readParcels(std::span<const Parcel> received) {
+    std::vector<Parcel> sorted(received.begin(), received.end());
+    std::sort(sorted.begin(), sorted.end(),
+              [](const Parcel& a, const Parcel& b) { return a.rank < b.rank; });
+    entries_.clear();
+    for (const Parcel& parcel : sorted) {
+        readParcel(parcel);
+    }
+    takeEntries();
+}
+
+template <class Scalar>
+auto RankGrid<Scalar>::readEntry(detail::ByteReader& reader) const -> Entry {
+    Entry entry;
+    entry.kind = reader.read<std::uint8_t>();
+    entry.object.value = reader.read<std::uint64_t>();
+    if ((entry.kind & kTellRemoved) == 0) {
+        entry.now = readBox<Scalar>(reader);
+    }
+    if ((entry.kind & kTellHome) != 0) {
+        entry.home = reader.read<std::uint32_t>();
+    }
+    if ((entry.kind & kTellNew) != 0) {
+        entry.groups.group = reader.read<std::uint32_t>();
+        entry.groups.mask = reader.read<std::uint32_t>();
+        entry.before = (entry.kind & kTellBorn) != 0 ? Box() : readBox<Scalar>(reader);
+    }
+    if ((entry.kind & kTellPayload) != 0) {
+        entry.payload =
+            reader.rest().first(std::min<std::size_t>(config_.payloadBytes, reader.left()));
+        reader.skip(entry.payload.size());
+    }
+    return entry;
+}
+
+template <class Scalar>
+void RankGrid<Scalar>::readParcel(const Parcel& parcel) {
+    detail::ByteReader reader(parcel.bytes);
+    const auto magic = reader.read<std::uint32_t>();
+    const auto size = reader.read<std::uint64_t>();
+    const auto frame = reader.read<std::uint64_t>();
+    const auto count = reader.read<std::uint32_t>();
+    if (reader.isTorn() || magic != kMagic || parcel.rank >= partition_.rankCount()) {
+        raiseBadParcel(parcel, "is no parcel of a RankGrid of this version.");
+    }
+    if (size != parcel.bytes.size()) {
+        raiseBadParcel(parcel, "says that it has " + std::to_string(size) + " bytes, and has " +
+                                   std::to_string(parcel.bytes.size()) + ".");
+    }
+    if (frame != frame_) {
+        raiseBadParcel(parcel, "is of frame " + std::to_string(frame) + "; this is frame " +
+                                   std::to_string(frame_) + ".");
+    }
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Entry entry = readEntry(reader);
+        const bool hasPayload = (entry.kind & kTellPayload) != 0;
+        if (reader.isTorn() || (hasPayload && entry.payload.size() != config_.payloadBytes)) {
+            raiseBadParcel(parcel, "ends within its entry " + std::to_string(i + 1) + " of " +
+                                       std::to_string(count) + ".");
+        }
+        if (!isKind(entry.kind) || (hasPayload && config_.payloadBytes == 0)) {
+            raiseBadParcel(parcel, "has an entry of the kind " + std::to_string(entry.kind) +
+                                       ", which there is not.");
+        }
+        if (entry.home >= partition_.rankCount()) {
+            raiseBadParcel(parcel, "moves an object to rank " + std::to_string(entry.home) +
+                                       " of " + std::to_string(partition_.rankCount()) + ".");
+        }
+        entries_.emplace_back(parcel, entry);
+    }
+    if (reader.left() > 0) {
+        raiseBadParcel(parcel, "goes on for " + std::to_string(reader.left()) +
+                                   " bytes behind its last entry.");
+    }
+}
+
+template <class Scalar>
+void RankGrid<Scalar>::takeEntries() {
+    const auto idAt = [&](std::size_t i) { return entries_[i].second.object.value; };
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        // Where the id is looked for, its number, what is known by that, and the proxy.
+        if (i + 4 * kAhead < entries_.size()) {
+            knownIds_.prefetch(idAt(i + 4 * kAhead));
+        }
+        if (i + 3 * kAhead < entries_.size()) {
+            detail::prefetch(knownProxies_.data() + knownIds_.prefetchKey(idAt(i + 3 * kAhead)));
+        }
+        if (i + kAhead < entries_.size()) {
+            const ProxyId next = find(GlobalId{idAt(i + kAhead)});
+            if (!next.isNull()) {
+                prefetch(next.index);
+            }
+        }
+        const auto& [parcel, entry] = entries_[i];
+        if ((entry.kind & kTellNew) == 0) {
+            takeEntry(parcel, entry);
+        }
+    }
+    // Last: an id that one rank removes another one may give again.
+    for (const auto& [parcel, entry] : entries_) {
+        if ((entry.kind & kTellNew) != 0) {
+            takeNew(parcel, entry);
+        }
+    }
+}
+
+// Of a ghost that is here.
+template <class Scalar>
+void RankGrid<Scalar>::takeEntry(const Parcel& parcel, const Entry& entry) {
+    const ProxyId id = find(entry.object);
+    if (id.isNull() || (marks_[id.index] & (kOwned | kTouched)) != 0 ||
+        homes_[id.index] != parcel.rank) {
+        raiseBadParcel(parcel, "changes the object " + std::to_string(entry.object.value) +
+                                   ", which is no ghost from there.");
+    }
+    const bool isRemoved = (entry.kind & kTellRemoved) != 0;
+    keepBefore(id.index);
+    touch(id.index);
+    if (!isRemoved) {
+        grid_.move(id, entry.now);
+    }
+    if ((entry.kind & (kTellRemoved | kTellLeaves)) != 0) {
+        marks_[id.index] |= isRemoved ? kRemoved : 0;
+        leave(id);
+        return;
+    }
+    takeHomeAndPayload(parcel, entry, id);
+}
+
+template <class Scalar>
+void RankGrid<Scalar>::takeNew(const Parcel& parcel, const Entry& entry) {
+    if (const ProxyId known = find(entry.object); !known.isNull()) {
+        throw RankError("The global id " + std::to_string(entry.object.value) +
+                        " names two objects, one on rank " + std::to_string(homeOf(known)) +
+                        " and one on rank " + std::to_string(parcel.rank) + ".");
+    }
+    const ProxyId id = addProxy(entry.object, entry.now, entry.groups);
+    marks_[id.index] =
+        static_cast<std::uint16_t>(kNew | kHasBefore | ((entry.kind & kTellBorn) != 0 ? kBorn : 0));
+    globalIds_[id.index] = entry.object;
+    befores_[id.index] = entry.before;
+    homes_[id.index] = parcel.rank;
+    touch(id.index);
+    takeHomeAndPayload(parcel, entry, id);
+}
+
+template <class Scalar>
+void RankGrid<Scalar>::takeHomeAndPayload(const Parcel& parcel, const Entry& entry, ProxyId id) {
+    std::copy(entry.payload.begin(), entry.payload.end(),
+              payloads_.begin() +
+                  static_cast<std::ptrdiff_t>(std::size_t{id.index} * config_.payloadBytes));
+    if ((entry.kind & kTellHome) == 0) {
+        return;
+    }
+    homes_[id.index] = entry.home;
+    if (entry.home == rank_) {
+        marks_[id.index] |= kOwned;
+        ++ownedCount_;
+        arrived_.push_back({entry.object, id, parcel.rank});
+    }
+}
+
+}  // namespace hashphase

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// The ranks of a communicator, of which any may fail: every wait listens for what the others have to say, and
+// ends. A rank that gives up tells all others why.
+
+#include <integration/distributed/rank_grid.hpp>
+#include <integration/mpi/export.hpp>
+
+#include <mpi.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace hashphase::detail {
+
+/// A communicator of its own, in which errors come back.
+class HASHPHASE_MPI_EXPORT Ranks {
+public:
+    /// By all ranks of `communicator` together; `seconds` is how long to wait for another rank, 0 for ever.
+    Ranks(MPI_Comm communicator, double seconds);
+    Ranks(const Ranks&) = delete;
+    Ranks& operator=(const Ranks&) = delete;
+    ~Ranks();
+
+    [[nodiscard]] std::uint32_t rank() const noexcept { return rank_; }
+    [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
+    [[nodiscard]] MPI_Comm communicator() const noexcept { return communicator_; }
+
+    /// Throws RankError where a call has not returned MPI_SUCCESS.
+    void check(int code, const char* call);
+
+    /// Waits for the request, which is void afterwards. `doing` says in an error what was waited for.
+    void wait(MPI_Request& request, const char* doing);
+    /// Tests a request once.
+    [[nodiscard]] bool isDone(MPI_Request& request);
+
+    /// To be called again and again while nothing happens: throws RankError when another rank has given up, or
+    /// has not been heard of for too long since restartClock(), and lets others run.
+    void idle(const std::string& doing);
+    void listen();
+    void restartClock() noexcept { since_ = std::chrono::steady_clock::now(); }
+
+    /// Tells all other ranks why this one gives up. Whoever waits for it throws RankError with the sentence.
+    void tellFailure(const std::string& sentence) noexcept;
+    /// tellFailure(), and throws RankError.
+    [[noreturn]] void fail(const std::string& sentence);
+    [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
+
+    /// Keeps what MPI may still read, although nobody waits for it any more.
+    static void abandon(std::vector<std::byte>&& bytes, MPI_Request request);
+
+    static constexpr int kFailureTag = 0;
+    static constexpr int kFirstTag = 1;
+
+private:
+    MPI_Comm communicator_ = MPI_COMM_NULL;
+    std::uint32_t rank_ = 0;
+    std::uint32_t count_ = 1;
+    double seconds_ = 0;
+    std::chrono::steady_clock::time_point since_;
+    std::string failure_;  // why this object is of no more use
+};
+
+}  // namespace hashphase::detail

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Zlib
+#pragma once
+
+// A grid over the processes of an MPI program: exact pairs and queries over all of them, each pair once.
+//
+//     DistributedGrid<float> grid(MPI_COMM_WORLD);             // by all ranks together
+//     const ProxyId proxy = grid.add(GlobalId{number}, box);   // on any rank
+//     grid.move(proxy, box);                                   // for what lives here and has moved
+//     const RankChanges changes = grid.update();               // by all ranks together, once a frame
+//     for (const ProxyPair& pair : changes.pairs.born) { ... }
+//
+// Objects    live on the rank that owns the place of their min corner: see rank_grid.hpp for objects, ghosts,
+//            payloads, pairs and what counts as of when, which are the same here. changes.departed and .arrived tell
+//            which objects have moved between ranks: send along what of them is not in the payload.
+// Balance    The parts of space follow the work: when the slowest rank has a set share more of it than the mean,
+//            update() cuts space again.
+// Together   The constructor, update() or begin() and end(), ask(), pairSum() and balanceNow() are called by all
+//            ranks in the same order. All else is local.
+// Failure    RankError on all ranks, with one sentence that says which rank and why: a rank that was left by an
+//            exception; that has another configuration, or makes other calls; that does not answer for
+//            DistributedConfig::patience; whose message is not what it says. The grid is of no more use then, and
+//            every further call throws that sentence; MPI_Abort() ends the program. The MPI library ends the
+//            program by itself where a process dies.
+// Threads    everything from the thread that may call MPI
+// Machines   all of one kind: numbers travel as they lie in memory
+
+#include <integration/distributed/questions.hpp>
+#include <integration/distributed/rank_grid.hpp>
+#include <integration/mpi/detail/ranks.hpp>
+#include <integration/mpi/detail/sparse_exchange.hpp>
+#include <integration/mpi/export.hpp>
+
+#include <mpi.h>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace hashphase {
+
+/// Settings, the same on all ranks.
+struct DistributedConfig {
+    RankGridConfig rank;
+
+    /// Space is cut again when the slowest rank has more than this times the mean load. Valid: 1 or more, infinity
+    /// for never.
+    double rebalanceAbove = 1.1;
+
+    /// How long to wait for another rank [s], 0 for ever. Make it longer than any rank ever takes between two
+    /// updates.
+    double patience = 600;
+};
+
+/// What the last frame cost this rank, and how evenly it was shared. Bytes and messages of questions count in
+/// the frame after.
+struct DistributedCost {
+    RankCost rank;
+    /// The largest load of all ranks, as a multiple of their mean, in the frame before this one.
+    double imbalance = 1;
+    bool wasRebalanced = false;   ///< space was cut again at the beginning of this frame
+    double rebalanceSeconds = 0;  ///< measuring the load, and cutting space
+    double packSeconds = 0;       ///< finding what others have to be told
+    double waitSeconds = 0;       ///< for messages of other ranks, in end()
+    double pairSeconds = 0;       ///< taking what they have told, and finding pairs
+};
+
+/// Objects, ghosts and pairs of this rank, and the ways to the others.
+template <class Scalar>
+class HASHPHASE_MPI_TEMPLATE_EXPORT DistributedGrid {
+public:
+    using Box = Aabb<Scalar>;
+
+    /// By all ranks of `communicator` together, of which the grid makes a duplicate. The first frame shares space
+    /// out by what there is. Throws RankError on all ranks where their configurations differ, and
+    /// std::invalid_argument where it is bad.
+    explicit DistributedGrid(MPI_Comm communicator, const DistributedConfig& config = {});
+    /// The same with a partition to begin with, equal on all ranks: that of a run that goes on, or one that the
+    /// program has made of what it knows. Objects that are added where they belong do not have to move.
+    /// Throws RankError on all ranks, too, where it is not equal, or not of as many ranks.
+    DistributedGrid(MPI_Comm communicator, const Partition<Scalar>& partition,
+                    const DistributedConfig& config = {});
+    DistributedGrid(const DistributedGrid&) = delete;
+    DistributedGrid& operator=(const DistributedGrid&) = delete;
+    /// Where an exception is under way, tells the other ranks. Else by all ranks together.
+    ~DistributedGrid();
+
+    // --- Objects: see RankGrid -------------------------------------------------------------------
+
+    ProxyId add(GlobalId object, const Box& box, const ProxyGroups& groups = {}) {
+        return here_->add(object, box, groups);
+    }
+    void move(ProxyId id, const Box& box) { here_->move(id, box); }
+    void remove(ProxyId id) { here_->remove(id); }
+    [[nodiscard]] std::span<std::byte> payload(ProxyId id) { return here_->payload(id); }
+    /// This rank's part: objects, ghosts, their payloads and ids, the partition.
+    [[nodiscard]] const RankGrid<Scalar>& here() const noexcept { return *here_; }
+
+    // --- Frame -----------------------------------------------------------------------------------
+
+    /// begin() and end().
+    RankChanges update(ParallelFor parallelFor = serialFor);
+
+    /// Ends the changes of this frame, and sends what other ranks have to know. While that is under way, until
+    /// end(), the program does other work: it may ask here().grid(), and change nothing.
+    void begin();
+
+    /// Takes what other ranks have sent, and returns what has changed. Valid until the next begin().
+    /// Cost: RankGrid::finish(), and a message to each rank concerned.
+    RankChanges end(ParallelFor parallelFor = serialFor);
+
+    /// From the next frame on this rank's load is `load` (not negative, asserted; in any unit, the same on all
+    /// ranks), such as the milliseconds that the whole of its step has taken, in place of RankCost::load.
+    void setLoad(double load);
+
+    /// Cuts space again at the beginning of the next frame, whatever the imbalance.
+    void balanceNow() noexcept { mustRebalance_ = true; }
+
+    // --- The whole -------------------------------------------------------------------------------
+
+    /// Asks all ranks concerned; each rank gets the answers to its own questions. Valid until the next call.
+    Answers<Scalar> ask(std::span<const Question<Scalar>> questions);
+
+    /// The sum over the pairs of all ranks, the same on all of them, as of the last update().
+    /// Cost: Pairs::collect(), and a sum over all ranks.
+    PairSum pairSum();
+
+    [[nodiscard]] const DistributedCost& lastCost() const noexcept { return cost_; }
+
+    /// The grid's own communicator.
+    [[nodiscard]] MPI_Comm communicator() const noexcept { return ranks_.communicator(); }
+
+private:
+    DistributedGrid(MPI_Comm communicator, const Partition<Scalar>* partition,
+                    const DistributedConfig& config);
+    void agree(const DistributedConfig& config, const Partition<Scalar>* partition);
+    void rebalance();
+    [[nodiscard]] bool isTimeToRebalance();
+    void startLoads();
+    void waitForLoads();
+    void checkUse() const;
+    template <class Work>
+    auto tellingFailure(const Work& work);
+
+    DistributedConfig config_;
+    detail::Ranks ranks_;
+    detail::SparseExchange exchange_;
+    std::optional<RankGrid<Scalar>> here_;
+    RankQuestions<Scalar> questions_;
+    DistributedCost cost_;
+    int exceptionsAtFirst_;
+
+    // The load of this rank, and over all ranks the sum and the largest: asked for at the end of a frame, there
+    // by the beginning of the next one.
+    std::optional<double> givenLoad_;
+    std::uint64_t load_ = 0;
+    std::uint64_t loadSum_ = 0;
+    std::uint64_t loadMost_ = 0;
+    MPI_Request loadRequests_[2] = {MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+    bool mustRebalance_ = false;
+    std::uint32_t framesSinceCut_ = 2;
+    std::uint32_t restAfterCut_ = 0;  // frames that the next cut waits longer
+    double imbalanceBeforeCut_ = 1;
+};
+
+extern template class DistributedGrid<float>;
+extern template class DistributedGrid<double>;
+
+}  // namespace hashphase
