@@ -64,12 +64,10 @@ void SwarmFiles::writeSpheres(const std::string& name, const RankGrid<float>& gr
     std::vector<VtkPoint> points;
     std::vector<float> radii;
     std::vector<std::uint64_t> ids;
-    grid.grid().forEach([&](ProxyId proxy, const Aabb<float>& box) {
-        const float radius = box.sizes().minCoeff() / 2;
-        const bool isPlane = box.sizes().maxCoeff() > 2 * side_;
-        if (grid.isOwned(proxy) && !isPlane) {
+    grid.forEachOwned([&](ProxyId proxy, const Aabb<float>& box) {
+        if (box.sizes().maxCoeff() < 2 * side_) {  // no plane
             points.push_back(pointOf(box.center()));
-            radii.push_back(radius);
+            radii.push_back(box.sizes().minCoeff() / 2);
             ids.push_back(grid.globalId(proxy).value);
         }
     });

@@ -26,6 +26,8 @@
 #include <string>
 #include <vector>
 
+#include <broadphase/core/hide_macros.hpp>
+
 namespace hashphase {
 
 /// A plane across an axis: points with a coordinate less than `at` are below it, the others above.
@@ -161,3 +163,5 @@ extern template class Partition<float>;
 extern template class Partition<double>;
 
 }  // namespace hashphase
+
+#include <broadphase/core/restore_macros.hpp>

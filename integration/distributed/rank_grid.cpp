@@ -254,13 +254,13 @@ void RankGrid<Scalar>::settleObjects() {
         clear(index, kOwned);
         --ownedCount_;
         if ((marks_[index] & kStaysHere) == 0) {
-            leave(id);
+            markGone(id);
         }
     }
 }
 
 template <class Scalar>
-void RankGrid<Scalar>::leave(ProxyId id) {
+void RankGrid<Scalar>::markGone(ProxyId id) {
     keepBefore(id.index);
     marks_[id.index] |= kGone;
     forgetId(globalIds_[id.index]);
@@ -316,8 +316,8 @@ std::vector<WeightedPoint<Scalar>> RankGrid<Scalar>::sampleLoad(std::size_t coun
         // A pair is where the smaller of its boxes is, and so is the search that finds it: as far as the cells of
         // the finest level.
         const Box reach(box.min(), box.max().cwiseMin(box.min() + finest));
-        CollectCount near;
-        const QueryCost cost = grid_.visit(BoxRegion<Scalar>{reach}, near);
+        CollectCount nearby;
+        const QueryCost cost = grid_.visit(BoxRegion<Scalar>{reach}, nearby);
         CountLarger<Scalar> larger{grid_, id, box.sizes().maxCoeff()};
         grid_.visit(BoxRegion<Scalar>{box}, larger);
         points.push_back({box.min(), kTestsToFile + static_cast<double>(cost.boxesTested) +

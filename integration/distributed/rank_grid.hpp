@@ -157,6 +157,17 @@ public:
     /// The object or ghost with this id, null where there is none here. Cost: O(1).
     [[nodiscard]] ProxyId find(GlobalId object) const noexcept;
 
+    /// Calls visit(ProxyId, const Box&) for each object that lives here, in the order of their indices; it may move
+    /// and remove objects. Cost: O(objects and ghosts).
+    template <class Visit>
+    void forEachOwned(const Visit& visit) const {
+        grid_.forEach([&](ProxyId id, const Box& box) {
+            if (isOwned(id)) {
+                visit(id, box);
+            }
+        });
+    }
+
     /// Number of objects that live here.
     [[nodiscard]] std::size_t size() const noexcept { return ownedCount_; }
     [[nodiscard]] std::size_t ghostCount() const noexcept { return grid_.size() - ownedCount_; }
@@ -290,7 +301,7 @@ private:
     void takeNew(const Parcel& parcel, const Entry& entry);
     void takeHomeAndPayload(const Parcel& parcel, const Entry& entry, ProxyId id);
     void settleObjects();
-    void leave(ProxyId id);
+    void markGone(ProxyId id);
     void reportPairs(const PairChanges& changes);
     [[nodiscard]] bool isSharedNow(ProxyId id) const noexcept;
     [[nodiscard]] bool ownsPair(const ProxyPair& pair) const noexcept;

@@ -313,7 +313,7 @@ void RankGrid<Scalar>::takeEntry(const Parcel& parcel, const Entry& entry) {
     }
     if ((entry.kind & (kTellRemoved | kTellLeaves)) != 0) {
         marks_[id.index] |= isRemoved ? kRemoved : 0;
-        leave(id);
+        markGone(id);
         return;
     }
     takeHomeAndPayload(parcel, entry, id);

@@ -53,7 +53,7 @@ set(CPACK_DEBIAN_HASHPHASE_DEVELOPMENT_PACKAGE_SUGGESTS "libtbb-dev")
 set(CPACK_COMPONENT_HASHPHASE_DEVELOPMENT_DEPENDS hashphase_libraries)
 set(CPACK_COMPONENT_HASHPHASE_DEVELOPMENT_DESCRIPTION "${about}
 .
-This package has the headers, what CMake and pkg-config find them by, and eight
+This package has the headers, what CMake and pkg-config find them by, and nine
 programs to copy, in /usr/share/doc/libhashphase-dev/examples.")
 
 set(CPACK_DEBIAN_HASHPHASE_TOOLS_PACKAGE_NAME hashphase)

@@ -54,7 +54,7 @@ TEST(ScalingPlan, CountsFollowTheSurfaceLaw) {
     EXPECT_NEAR(4, large.ghosts / small.ghosts, 0.5);
     EXPECT_GT(more.ghosts, small.ghosts);
     EXPECT_LT(more.ghosts, 3 * small.ghosts);
-    EXPECT_EQ(7, small.messages);
+    EXPECT_EQ(7, small.mostMessages);
     EXPECT_GT(large.efficiency, small.efficiency);
     EXPECT_LT(large.efficiency, 1);
 }
