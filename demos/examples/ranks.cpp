@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     MPI_Init(&argc, &argv);
     {
         DistributedConfig config;
-        config.rank.payloadBytes = sizeof(Ball);
+        config.rankGrid.payloadBytes = sizeof(Ball);
         DistributedGrid<float> grid(MPI_COMM_WORLD, config);
         const std::uint32_t rank = grid.here().rank();
         std::uint32_t seed = 1;

@@ -16,12 +16,14 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 namespace hashphase::demos {
@@ -125,8 +127,7 @@ int printPlan(const SwarmOptions& options, Console& console) {
     return kExitOk;
 }
 
-constexpr const char* kRankVariables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK",
-                                          "SLURM_PROCID"};
+constexpr const char* kRankVariables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 
 bool isStartedByMpirun() {
     return std::ranges::any_of(kRankVariables,
@@ -271,6 +272,8 @@ int runSwarmCommand(const SwarmOptions& options, const std::vector<std::string>&
         return runRank(options, kind, console, mpi);
     } catch (const RankError& error) {
         tellFault(mpi.rank, error.what());
+        // Whoever knows why is to have said it before all are ended.
+        std::this_thread::sleep_for(std::chrono::seconds(1));
     } catch (const std::exception& error) {
         std::cerr << "hashphase: " + std::string(error.what()) + " (on rank " +
                          std::to_string(mpi.rank) + ")\n"

@@ -85,10 +85,10 @@ RankFrame frameOf(const DistributedGrid<float>& grid, const RankChanges& changes
     const DistributedCost& cost = grid.lastCost();
     RankFrame frame;
     frame.objects = static_cast<double>(grid.here().size());
-    frame.ghosts = static_cast<double>(cost.rank.ghosts);
-    frame.load = cost.rank.load;
-    frame.bytes = static_cast<double>(cost.rank.bytesSent);
-    frame.messages = static_cast<double>(cost.rank.parcelsSent);
+    frame.ghosts = static_cast<double>(cost.rankGrid.ghosts);
+    frame.load = cost.rankGrid.load;
+    frame.bytes = static_cast<double>(cost.rankGrid.bytesSent);
+    frame.messages = static_cast<double>(cost.rankGrid.parcelsSent);
     frame.migrated = static_cast<double>(changes.departed.size());
     frame.rebalance = cost.rebalanceSeconds * kMs;
     frame.tell = cost.packSeconds * kMs;

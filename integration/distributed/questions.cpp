@@ -234,6 +234,9 @@ std::span<const Parcel> RankQuestions<Scalar>::answer(const RankGrid<Scalar>& gr
     clearWriters();
     for (const Parcel& parcel : received) {
         detail::ByteReader reader = openParcel(parcel, kQuestionMagic, "questions");
+        if (parcel.rank >= grid.partition().rankCount()) {
+            raiseBadQuestions(parcel, "are questions of a rank that there is not.");
+        }
         detail::ByteWriter& writer = writerFor(parcel.rank, grid.partition().rankCount());
         while (reader.left() > 0) {
             const auto number = reader.read<std::uint32_t>();

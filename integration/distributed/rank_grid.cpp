@@ -75,17 +75,20 @@ RankGrid<Scalar>::RankGrid(std::uint32_t rank, const Partition<Scalar>& partitio
 template <class Scalar>
 void RankGrid<Scalar>::makeRoom(std::uint32_t index) {
     if (index >= marks_.size()) {
-        marks_.resize(index + 1);
-        globalIds_.resize(index + 1);
-        befores_.resize(index + 1);
-        homes_.resize(index + 1);
+        globalIds_.resize(std::size_t{index} + 1);
+        befores_.resize(std::size_t{index} + 1);
+        homes_.resize(std::size_t{index} + 1);
         payloads_.resize((std::size_t{index} + 1) * config_.payloadBytes);
+        marks_.resize(std::size_t{index} + 1);  // last: by it is seen whether there is room
     }
 }
 
 template <class Scalar>
 ProxyId RankGrid<Scalar>::add(GlobalId object, const Box& box, const ProxyGroups& groups) {
     HASHPHASE_ASSERT(!isPacked_, kBetweenFrames);
+    if (isPacked_) {
+        return {};
+    }
     if (!find(object).isNull()) {
         detail::raiseInvalidArgument("The global id " + std::to_string(object.value) +
                                      " names an object already.");
@@ -146,8 +149,9 @@ void RankGrid<Scalar>::remove(ProxyId id) {
     } else {
         keepBefore(id.index);
         clear(id.index, kOwned);
-        marks_[id.index] |= kRemoved;
+        marks_[id.index] |= kRemovedEverywhere;
     }
+    nextFormerNames_.push_back({id, globalIds_[id.index]});
     forgetId(globalIds_[id.index]);
     --ownedCount_;
     grid_.remove(id);
@@ -183,8 +187,15 @@ std::uint32_t RankGrid<Scalar>::homeOf(ProxyId id) const {
 
 template <class Scalar>
 GlobalId RankGrid<Scalar>::globalId(ProxyId id) const {
-    HASHPHASE_ASSERT(id.index < globalIds_.size(), "This rank never had this proxy.");
-    return id.index < globalIds_.size() ? globalIds_[id.index] : GlobalId{};
+    if (grid_.contains(id)) {
+        return globalIds_[id.index];
+    }
+    const auto former =
+        std::lower_bound(formerNames_.begin(), formerNames_.end(), FormerName{id, GlobalId{}});
+    const bool isKnown = former != formerNames_.end() && former->id == id;
+    HASHPHASE_ASSERT(isKnown,
+                     "Objects and ghosts here have a name, and what the last frame has removed.");
+    return isKnown ? former->object : GlobalId{};
 }
 
 template <class Scalar>
@@ -227,12 +238,12 @@ RankChanges RankGrid<Scalar>::finish(std::span<const Parcel> received, ParallelF
     }
     arrived_.clear();
     departed_.clear();
-    gone_.clear();
+    removedHere_.clear();
     settleObjects();
     readParcels(received);
     // Last: until the next update, an index that is free now may name what has gone.
-    for (const Gone& gone : gone_) {
-        grid_.remove(gone.id);
+    for (const RemovedProxy& removed : removedHere_) {
+        grid_.remove(removed.id);
     }
     if (isPartitionNew_) {
         grid_.store().tables.mobile.chooseAgain();  // the objects here are others now
@@ -254,18 +265,19 @@ void RankGrid<Scalar>::settleObjects() {
         clear(index, kOwned);
         --ownedCount_;
         if ((marks_[index] & kStaysHere) == 0) {
-            markGone(id);
+            markRemovedHere(id);
         }
     }
 }
 
 template <class Scalar>
-void RankGrid<Scalar>::markGone(ProxyId id) {
+void RankGrid<Scalar>::markRemovedHere(ProxyId id) {
     keepBefore(id.index);
-    marks_[id.index] |= kGone;
+    nextFormerNames_.push_back({id, globalIds_[id.index]});
+    marks_[id.index] |= kRemovedHere;
     forgetId(globalIds_[id.index]);
-    homes_[id.index] = static_cast<std::uint32_t>(gone_.size());
-    gone_.push_back({id, grid_.box(id)});
+    homes_[id.index] = static_cast<std::uint32_t>(removedHere_.size());
+    removedHere_.push_back({id, grid_.box(id)});
 }
 
 template <class Scalar>
@@ -277,6 +289,9 @@ void RankGrid<Scalar>::endFrame() {
             id.isNull() ? 0 : (marks_[index] & kOwned) | (isShared ? kShared : 0));
     }
     touched_.clear();
+    formerNames_.swap(nextFormerNames_);
+    nextFormerNames_.clear();
+    std::sort(formerNames_.begin(), formerNames_.end());
     if (isPartitionNew_) {
         lastPartition_ = partition_;
         isPartitionNew_ = false;

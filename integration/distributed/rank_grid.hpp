@@ -83,8 +83,9 @@ struct RankChanges {
     /// The pairs that this rank reports, by ProxyIds of this rank, sorted by these. globalPair() leads to the
     /// objects' ids, of objects that have gone as well.
     PairChanges pairs;
-    std::span<const Migration> arrived;   ///< sorted by `rank`
-    std::span<const Migration> departed;  ///< in the order in which they have moved
+    /// Sorted by rank; of each rank in the order in which it has them in its `departed`.
+    std::span<const Migration> arrived;
+    std::span<const Migration> departed;
 };
 
 /// What the last frame cost this rank.
@@ -132,7 +133,8 @@ public:
     void remove(ProxyId id);
 
     /// The object's payload, to be written, of an object that lives here. What is written travels with the
-    /// object when it moves to another rank, and to its ghosts in the next frame. Cost: O(1).
+    /// object when it moves to another rank, and to its ghosts in the next frame; call it again to write again then.
+    /// Valid until the next add() or finish(). Cost: O(1).
     [[nodiscard]] std::span<std::byte> payload(ProxyId id);
 
     /// The same to be read, of a ghost as its owner last told it. Empty where the id is stale.
@@ -146,7 +148,8 @@ public:
     /// The rank on which the object lives, of a ghost or an object of this grid (asserted).
     [[nodiscard]] std::uint32_t homeOf(ProxyId id) const;
 
-    /// The object's id on all ranks; of a proxy that the last finish() has removed as well.
+    /// The object's id on all ranks, of an object or ghost here; and, until the next finish(), of those that were
+    /// removed here in the frame that the last one has ended. Others are asserted, and have the id 0.
     [[nodiscard]] GlobalId globalId(ProxyId id) const;
 
     /// The pair of objects that two proxies stand for.
@@ -194,8 +197,10 @@ public:
     /// Number of the frame, from 0 on: how often finish() has ended.
     [[nodiscard]] std::uint64_t frame() const noexcept { return frame_; }
 
-    /// Whether nothing has changed here since the last finish(). Cost: O(1).
-    [[nodiscard]] bool isUpToDate() const noexcept { return pairs_.isUpToDate(); }
+    /// Whether nothing has changed here since the last finish(), the partition included. Cost: O(1).
+    [[nodiscard]] bool isUpToDate() const noexcept {
+        return !isPacked_ && !isPartitionNew_ && pairs_.isUpToDate();
+    }
 
     /// Appends the pairs that this rank owns, sorted. Nothing has changed since finish() (asserted).
     /// Cost: Pairs::collect().
@@ -234,10 +239,10 @@ private:
         kHasBefore = 8,  // befores_ has its box at the last finish(); without, that is the box now
         kNew = 16,       // was not here at the last finish()
         kBorn = 32,      // was nowhere then
-        kGone = 64,      // is here no more
-        kRemoved = 128,  // is nowhere any more
-        kPayload = 256,  // its payload has changed
-        kStaysHere = 512,  // its new box touches this rank's region, whoever owns it
+        kRemovedHere = 64,         // is not here any more
+        kRemovedEverywhere = 128,  // is on no rank any more
+        kPayload = 256,            // its payload has changed
+        kStaysHere = 512,          // its new box touches this rank's region, whoever owns it
     };
 
     // What a rank is told of an object.
@@ -290,7 +295,7 @@ private:
     void prefetch(std::uint32_t index) const noexcept;
     void touchForPartition();
     void packObject(std::uint32_t index);
-    void tell(std::uint32_t rank, std::uint32_t index, unsigned kind);
+    void addEntry(std::uint32_t rank, std::uint32_t index, unsigned kind);
     void makeRoom(std::uint32_t index);
 
     // finish(), in order.
@@ -299,9 +304,9 @@ private:
     void takeEntries();
     void takeEntry(const Parcel& parcel, const Entry& entry);
     void takeNew(const Parcel& parcel, const Entry& entry);
-    void takeHomeAndPayload(const Parcel& parcel, const Entry& entry, ProxyId id);
+    void takeHomeAndPayload(const Entry& entry, ProxyId id);
     void settleObjects();
-    void markGone(ProxyId id);
+    void markRemovedHere(ProxyId id);
     void reportPairs(const PairChanges& changes);
     [[nodiscard]] bool isSharedNow(ProxyId id) const noexcept;
     [[nodiscard]] bool ownsPair(const ProxyPair& pair) const noexcept;
@@ -325,8 +330,8 @@ private:
     std::vector<std::uint16_t> marks_;
     std::vector<GlobalId> globalIds_;
     std::vector<Box> befores_;
-    std::vector<std::uint32_t>
-        homes_;  // of a ghost the rank where it lives; of what is gone its place in gone_
+    // Of a ghost the rank where it lives; of what has left this rank its place in removedHere_.
+    std::vector<std::uint32_t> homes_;
     std::vector<std::byte> payloads_;
     // The ids of all objects and ghosts here, numbered; and their proxies, by that number.
     detail::FlatSet knownIds_;
@@ -334,13 +339,12 @@ private:
     std::size_t ownedCount_ = 0;
 
     // Of this frame.
-    std::vector<std::uint32_t>
-        touched_;  // objects that live here; in finish() ghosts that have changed, too
-    struct Gone {
+    std::vector<std::uint32_t> touched_;  // objects here; in finish() ghosts that have changed, too
+    struct RemovedProxy {
         ProxyId id;
         Box now;
     };
-    std::vector<Gone> gone_;                   // to other ranks
+    std::vector<RemovedProxy> removedHere_;
     std::vector<detail::ByteWriter> writers_;  // by rank
     std::vector<std::uint32_t> entryCounts_;   // by rank
     std::vector<std::uint32_t> destinations_;  // the ranks whose writer is not empty
@@ -348,6 +352,15 @@ private:
     std::vector<std::uint32_t> ranksNow_;
     std::vector<Parcel> parcels_;
     std::vector<std::pair<Parcel, Entry>> entries_;  // received
+    // The names of proxies that were removed here in the last frame, sorted, and in this one.
+    struct FormerName {
+        ProxyId id;
+        GlobalId object;
+
+        friend auto operator<=>(const FormerName&, const FormerName&) = default;
+    };
+    std::vector<FormerName> formerNames_;
+    std::vector<FormerName> nextFormerNames_;
     std::vector<Migration> arrived_;
     std::vector<Migration> departed_;
     std::vector<ProxyPair> born_;

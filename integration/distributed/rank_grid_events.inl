@@ -13,7 +13,10 @@
 
 #include <integration/distributed/rank_grid.hpp>
 
+#include <broadphase/diagnostics.hpp>
+
 #include <algorithm>
+#include <iterator>
 
 namespace hashphase {
 
@@ -32,7 +35,8 @@ const Aabb<Scalar>& RankGrid<Scalar>::boxBefore(ProxyId id) const noexcept {
 // Of what is not removed.
 template <class Scalar>
 const Aabb<Scalar>& RankGrid<Scalar>::boxNow(ProxyId id) const noexcept {
-    return (marks_[id.index] & kGone) != 0 ? gone_[homes_[id.index]].now : grid_.box(id);
+    return (marks_[id.index] & kRemovedHere) != 0 ? removedHere_[homes_[id.index]].now
+                                                  : grid_.box(id);
 }
 
 template <class Scalar>
@@ -65,7 +69,8 @@ bool RankGrid<Scalar>::isDeadHere(const ProxyPair& pair) const noexcept {
         lastPartition_.rankOf(pairPoint(boxBefore(pair.first), boxBefore(pair.second))) != rank_) {
         return false;
     }
-    return ((first | second) & kRemoved) != 0 || !overlaps(boxNow(pair.first), boxNow(pair.second));
+    return ((first | second) & kRemovedEverywhere) != 0 ||
+           !overlaps(boxNow(pair.first), boxNow(pair.second));
 }
 
 template <class Scalar>
@@ -81,6 +86,7 @@ void RankGrid<Scalar>::reportPairs(const PairChanges& changes) {
 template <class Scalar>
 template <class Visit>
 void RankGrid<Scalar>::forEachOwnedPair(const Visit& visit) const {
+    HASHPHASE_ASSERT(isUpToDate(), "Pairs are collected after finish(), before the next change.");
     std::vector<ProxyPair> here;
     pairs_.collect(here);
     for (const ProxyPair& pair : here) {

@@ -28,18 +28,18 @@ constexpr std::size_t kCountAt = 20;
 // How many objects ahead memory is fetched.
 constexpr std::size_t kAhead = 8;
 
-constexpr unsigned kTellNew = 1;      // the receiver has no ghost of it yet
-constexpr unsigned kTellLeaves = 2;   // the object does not touch the receiver's region any more
-constexpr unsigned kTellRemoved = 4;  // the object is nowhere any more
-constexpr unsigned kTellBorn = 8;     // kTellNew, and the object was nowhere before
-constexpr unsigned kTellHome = 16;    // the object lives on another rank from now on
-constexpr unsigned kTellPayload = 32;
-constexpr unsigned kTellAll = 63;
+constexpr unsigned kEntryNew = 1;      // the receiver has no ghost of it yet
+constexpr unsigned kEntryLeaves = 2;   // the object does not touch the receiver's region any more
+constexpr unsigned kEntryRemoved = 4;  // the object is nowhere any more
+constexpr unsigned kEntryBorn = 8;     // kEntryNew, and the object was nowhere before
+constexpr unsigned kEntryHome = 16;    // the object lives on another rank from now on
+constexpr unsigned kEntryPayload = 32;
+constexpr unsigned kEntryAll = 63;
 
 constexpr bool isKind(unsigned kind) {
-    const bool isNew = (kind & kTellNew) != 0;
-    const bool isKnown = (kind & (kTellLeaves | kTellRemoved)) != 0;
-    return kind <= kTellAll && !(isNew && isKnown) && (isNew || (kind & kTellBorn) == 0);
+    const bool isNew = (kind & kEntryNew) != 0;
+    const bool isKnown = (kind & (kEntryLeaves | kEntryRemoved)) != 0;
+    return kind <= kEntryAll && !(isNew && isKnown) && (isNew || (kind & kEntryBorn) == 0);
 }
 
 template <class Scalar>
@@ -104,8 +104,8 @@ std::span<const Parcel> RankGrid<Scalar>::pack() {
 template <class Scalar>
 void RankGrid<Scalar>::packObject(std::uint32_t index) {
     const unsigned marks = marks_[index];
-    const bool isRemoved = (marks & kRemoved) != 0;
-    if ((marks & (kOwned | kRemoved)) == 0) {
+    const bool isRemoved = (marks & kRemovedEverywhere) != 0;
+    if ((marks & (kOwned | kRemovedEverywhere)) == 0) {
         return;  // added and removed again
     }
     const ProxyId id = grid_.idAt(index);
@@ -123,31 +123,31 @@ void RankGrid<Scalar>::packObject(std::uint32_t index) {
         homes_[index] = ranksNow_.empty() ? rank_ : partition_.rankOf(now.min());
         hasMoved = homes_[index] != rank_;
     }
-    const unsigned forAll = (isRemoved ? kTellRemoved : 0U) | (hasMoved ? kTellHome : 0U);
+    const unsigned forAll = (isRemoved ? kEntryRemoved : 0U) | (hasMoved ? kEntryHome : 0U);
     const bool isSame =
         !isRemoved && isSameBits(befores_[index], grid_.box(id)) && (marks & kPayload) == 0;
     auto before = ranksBefore_.begin();
     for (const std::uint32_t rank : ranksNow_) {
         for (; before != ranksBefore_.end() && *before < rank; ++before) {
-            tell(*before, index, forAll | kTellLeaves);
+            addEntry(*before, index, forAll | kEntryLeaves);
         }
         const bool isKnown = before != ranksBefore_.end() && *before == rank;
         before += isKnown ? 1 : 0;
         if (rank == rank_) {
             marks_[index] |= kStaysHere;
         } else if (!isKnown) {
-            tell(rank, index, forAll | kTellNew | ((marks & kBorn) != 0 ? kTellBorn : 0U));
+            addEntry(rank, index, forAll | kEntryNew | ((marks & kBorn) != 0 ? kEntryBorn : 0U));
         } else if (hasMoved || !isSame) {
-            tell(rank, index, forAll);
+            addEntry(rank, index, forAll);
         }
     }
     for (; before != ranksBefore_.end(); ++before) {
-        tell(*before, index, forAll | (isRemoved ? 0U : kTellLeaves));
+        addEntry(*before, index, forAll | (isRemoved ? 0U : kEntryLeaves));
     }
 }
 
 template <class Scalar>
-void RankGrid<Scalar>::tell(std::uint32_t rank, std::uint32_t index, unsigned kind) {
+void RankGrid<Scalar>::addEntry(std::uint32_t rank, std::uint32_t index, unsigned kind) {
     if (rank == rank_) {
         return;
     }
@@ -160,24 +160,24 @@ void RankGrid<Scalar>::tell(std::uint32_t rank, std::uint32_t index, unsigned ki
         writer.write(std::uint32_t{0});  // at kCountAt
     }
     const ProxyId id = grid_.idAt(index);
-    const bool isNew = (kind & kTellNew) != 0;
+    const bool isNew = (kind & kEntryNew) != 0;
     const bool hasPayload = config_.payloadBytes > 0 &&
                             (isNew || (marks_[index] & kPayload) != 0) &&
-                            (kind & (kTellRemoved | kTellLeaves)) == 0;
-    kind |= hasPayload ? kTellPayload : 0U;
+                            (kind & (kEntryRemoved | kEntryLeaves)) == 0;
+    kind |= hasPayload ? kEntryPayload : 0U;
     writer.write(static_cast<std::uint8_t>(kind));
     writer.write(globalIds_[index].value);
-    if ((kind & kTellRemoved) == 0) {
+    if ((kind & kEntryRemoved) == 0) {
         writeBox(writer, grid_.box(id));
     }
-    if ((kind & kTellHome) != 0) {
+    if ((kind & kEntryHome) != 0) {
         writer.write(homes_[index]);
     }
     if (isNew) {
         const ProxyGroups groups = grid_.groups(id);
         writer.write(groups.group);
         writer.write(groups.mask);
-        if ((kind & kTellBorn) == 0) {
+        if ((kind & kEntryBorn) == 0) {
             writeBox(writer, befores_[index]);
         }
     }
@@ -206,18 +206,18 @@ auto RankGrid<Scalar>::readEntry(detail::ByteReader& reader) const -> Entry {
     Entry entry;
     entry.kind = reader.read<std::uint8_t>();
     entry.object.value = reader.read<std::uint64_t>();
-    if ((entry.kind & kTellRemoved) == 0) {
+    if ((entry.kind & kEntryRemoved) == 0) {
         entry.now = readBox<Scalar>(reader);
     }
-    if ((entry.kind & kTellHome) != 0) {
+    if ((entry.kind & kEntryHome) != 0) {
         entry.home = reader.read<std::uint32_t>();
     }
-    if ((entry.kind & kTellNew) != 0) {
+    if ((entry.kind & kEntryNew) != 0) {
         entry.groups.group = reader.read<std::uint32_t>();
         entry.groups.mask = reader.read<std::uint32_t>();
-        entry.before = (entry.kind & kTellBorn) != 0 ? Box() : readBox<Scalar>(reader);
+        entry.before = (entry.kind & kEntryBorn) != 0 ? Box() : readBox<Scalar>(reader);
     }
-    if ((entry.kind & kTellPayload) != 0) {
+    if ((entry.kind & kEntryPayload) != 0) {
         entry.payload =
             reader.rest().first(std::min<std::size_t>(config_.payloadBytes, reader.left()));
         reader.skip(entry.payload.size());
@@ -245,7 +245,7 @@ void RankGrid<Scalar>::readParcel(const Parcel& parcel) {
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const Entry entry = readEntry(reader);
-        const bool hasPayload = (entry.kind & kTellPayload) != 0;
+        const bool hasPayload = (entry.kind & kEntryPayload) != 0;
         if (reader.isTorn() || (hasPayload && entry.payload.size() != config_.payloadBytes)) {
             raiseBadParcel(parcel, "ends within its entry " + std::to_string(i + 1) + " of " +
                                        std::to_string(count) + ".");
@@ -254,7 +254,9 @@ void RankGrid<Scalar>::readParcel(const Parcel& parcel) {
             raiseBadParcel(parcel, "has an entry of the kind " + std::to_string(entry.kind) +
                                        ", which there is not.");
         }
-        if (entry.home >= partition_.rankCount()) {
+        const bool leavesForHere = entry.home == rank_ && (entry.kind & kEntryHome) != 0 &&
+                                   (entry.kind & (kEntryLeaves | kEntryRemoved)) != 0;
+        if (entry.home >= partition_.rankCount() || leavesForHere) {
             raiseBadParcel(parcel, "moves an object to rank " + std::to_string(entry.home) +
                                        " of " + std::to_string(partition_.rankCount()) + ".");
         }
@@ -284,14 +286,19 @@ void RankGrid<Scalar>::takeEntries() {
             }
         }
         const auto& [parcel, entry] = entries_[i];
-        if ((entry.kind & kTellNew) == 0) {
+        if ((entry.kind & kEntryNew) == 0) {
             takeEntry(parcel, entry);
         }
     }
     // Last: an id that one rank removes another one may give again.
     for (const auto& [parcel, entry] : entries_) {
-        if ((entry.kind & kTellNew) != 0) {
+        if ((entry.kind & kEntryNew) != 0) {
             takeNew(parcel, entry);
+        }
+    }
+    for (const auto& [parcel, entry] : entries_) {
+        if ((entry.kind & kEntryHome) != 0 && entry.home == rank_) {
+            arrived_.push_back({entry.object, find(entry.object), parcel.rank});
         }
     }
 }
@@ -305,18 +312,18 @@ void RankGrid<Scalar>::takeEntry(const Parcel& parcel, const Entry& entry) {
         raiseBadParcel(parcel, "changes the object " + std::to_string(entry.object.value) +
                                    ", which is no ghost from there.");
     }
-    const bool isRemoved = (entry.kind & kTellRemoved) != 0;
+    const bool isRemoved = (entry.kind & kEntryRemoved) != 0;
     keepBefore(id.index);
     touch(id.index);
     if (!isRemoved) {
         grid_.move(id, entry.now);
     }
-    if ((entry.kind & (kTellRemoved | kTellLeaves)) != 0) {
-        marks_[id.index] |= isRemoved ? kRemoved : 0;
-        markGone(id);
+    if ((entry.kind & (kEntryRemoved | kEntryLeaves)) != 0) {
+        marks_[id.index] |= isRemoved ? kRemovedEverywhere : 0;
+        markRemovedHere(id);
         return;
     }
-    takeHomeAndPayload(parcel, entry, id);
+    takeHomeAndPayload(entry, id);
 }
 
 template <class Scalar>
@@ -327,28 +334,27 @@ void RankGrid<Scalar>::takeNew(const Parcel& parcel, const Entry& entry) {
                         " and one on rank " + std::to_string(parcel.rank) + ".");
     }
     const ProxyId id = addProxy(entry.object, entry.now, entry.groups);
-    marks_[id.index] =
-        static_cast<std::uint16_t>(kNew | kHasBefore | ((entry.kind & kTellBorn) != 0 ? kBorn : 0));
+    marks_[id.index] = static_cast<std::uint16_t>(kNew | kHasBefore |
+                                                  ((entry.kind & kEntryBorn) != 0 ? kBorn : 0));
     globalIds_[id.index] = entry.object;
     befores_[id.index] = entry.before;
     homes_[id.index] = parcel.rank;
     touch(id.index);
-    takeHomeAndPayload(parcel, entry, id);
+    takeHomeAndPayload(entry, id);
 }
 
 template <class Scalar>
-void RankGrid<Scalar>::takeHomeAndPayload(const Parcel& parcel, const Entry& entry, ProxyId id) {
+void RankGrid<Scalar>::takeHomeAndPayload(const Entry& entry, ProxyId id) {
     std::copy(entry.payload.begin(), entry.payload.end(),
               payloads_.begin() +
                   static_cast<std::ptrdiff_t>(std::size_t{id.index} * config_.payloadBytes));
-    if ((entry.kind & kTellHome) == 0) {
+    if ((entry.kind & kEntryHome) == 0) {
         return;
     }
     homes_[id.index] = entry.home;
     if (entry.home == rank_) {
         marks_[id.index] |= kOwned;
         ++ownedCount_;
-        arrived_.push_back({entry.object, id, parcel.rank});
     }
 }
 

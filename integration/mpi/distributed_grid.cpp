@@ -7,9 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <limits>
+#include <new>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace hashphase {
 namespace {
@@ -17,9 +23,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Space is cut by so many points of all ranks together, and of each.
-constexpr std::uint32_t kSamples = 1U << 18;
+constexpr std::uint32_t kSamples = 1U << 20;
 constexpr std::uint32_t kMostSamplesOfRank = 8192;
 constexpr std::uint32_t kLeastSamplesOfRank = 64;
+
+constexpr std::uint32_t samplesOfRank(std::uint32_t ranks) {
+    return std::clamp(kSamples / ranks, kLeastSamplesOfRank, kMostSamplesOfRank);
+}
 
 // Where cutting space again does not help, it is done ever more rarely.
 constexpr std::uint32_t kLongestRest = 64;
@@ -27,6 +37,7 @@ constexpr double kHelpful = 0.95;
 
 // Loads are added as whole numbers, whose sum is the same on all ranks.
 constexpr double kLoadUnit = 0x1p-10;
+constexpr double kMostLoad = 0x1p46;
 
 class Timer {
 public:
@@ -61,18 +72,18 @@ std::array<NamedSetting, 11> settingsOf(const DistributedConfig& config,
         cutHash = static_cast<double>(hash >> 16);
         partitionRanks = partition->rankCount();
     }
-    return {
-        {{"the size of Scalar in bytes", sizeof(Scalar)},
-         {"GridConfig::cellSize", config.rank.grid.cellSize},
-         {"GridConfig::levelRatio", config.rank.grid.levelRatio},
-         {"GridConfig::updatesBeforeRest", static_cast<double>(config.rank.grid.updatesBeforeRest)},
-         {"GridConfig::slack", config.rank.grid.slack.value_or(-1)},
-         {"RankGridConfig::payloadBytes", static_cast<double>(config.rank.payloadBytes)},
-         {"DistributedConfig::rebalanceAbove", config.rebalanceAbove},
-         {"DistributedConfig::patience", config.patience},
-         {"the number of ranks of the partition", partitionRanks},
-         {"the partition (a number made of its cuts)", cutHash},
-         {"the version of the messages", 1}}};
+    return {{{"the size of Scalar in bytes", sizeof(Scalar)},
+             {"GridConfig::cellSize", config.rankGrid.grid.cellSize},
+             {"GridConfig::levelRatio", config.rankGrid.grid.levelRatio},
+             {"GridConfig::updatesBeforeRest",
+              static_cast<double>(config.rankGrid.grid.updatesBeforeRest)},
+             {"GridConfig::slack", config.rankGrid.grid.slack.value_or(-1)},
+             {"RankGridConfig::payloadBytes", static_cast<double>(config.rankGrid.payloadBytes)},
+             {"DistributedConfig::rebalanceAbove", config.rebalanceAbove},
+             {"DistributedConfig::patience", config.patience},
+             {"the number of ranks of the partition", partitionRanks},
+             {"the partition (a number made of its cuts)", cutHash},
+             {"the version of the messages", 1}}};
 }
 
 std::string asText(double value) {
@@ -105,29 +116,33 @@ DistributedGrid<Scalar>::DistributedGrid(MPI_Comm communicator, const Partition<
             "rebalanceAbove must be 1 or more, and patience 0 s or more; they are " +
             asText(config.rebalanceAbove) + " and " + asText(config.patience) + ".");
     }
-    if (partition != nullptr) {
-        here_.emplace(ranks_.rank(), *partition, config.rank);
-        return;
+    try {
+        // Without a partition all lies below all cuts, at first.
+        const std::vector<Cut<Scalar>> cuts(ranks_.count() - 1,
+                                            {std::numeric_limits<Scalar>::infinity(), 0});
+        here_.emplace(ranks_.rank(), partition != nullptr ? *partition : Partition<Scalar>(cuts),
+                      config.rankGrid);
+    } catch (const std::bad_alloc&) {  // what else is thrown, all ranks throw
+        ranks_.fail("There is not enough memory for its part of the grid.");
     }
-    // At first all lies below all cuts.
-    const std::vector<Cut<Scalar>> cuts(ranks_.count() - 1,
-                                        {std::numeric_limits<Scalar>::infinity(), 0});
-    here_.emplace(ranks_.rank(), Partition<Scalar>(cuts), config.rank);
-    mustRebalance_ = ranks_.count() > 1;
+    isFirstToCut_ = partition == nullptr && ranks_.count() > 1;
 }
 
 template <class Scalar>
 DistributedGrid<Scalar>::~DistributedGrid() {
     if (std::uncaught_exceptions() > exceptionsAtFirst_) {
         ranks_.tellFailure("It was left by an exception.");
+    } else if (isBegun_) {
+        ranks_.tellFailure("Its grid was destroyed between begin() and end().");
     }
-    if (!ranks_.failure().empty()) {
+    if (!detail::Ranks::isMpiReady()) {
         return;
     }
     try {  // nothing may be under way when the communicator goes
+        checkUse(isBegun_);
         waitForLoads();
     } catch (const std::exception&) {
-        return;  // then it stays
+        detail::Ranks::abandon(loads_);  // the communicator stays
     }
 }
 
@@ -136,7 +151,9 @@ template <class Scalar>
 void DistributedGrid<Scalar>::agree(const DistributedConfig& config,
                                     const Partition<Scalar>* partition) {
     const auto settings = settingsOf<Scalar>(config, partition, ranks_.count());
-    std::array<double, 2 * std::tuple_size_v<decltype(settings)>> least;
+    using Least = std::array<double, 2 * std::tuple_size_v<decltype(settings)>>;
+    const auto buffer = std::make_shared<Least>();
+    Least& least = *buffer;
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const double value = std::isnan(settings[i].value) ? std::numeric_limits<double>::lowest()
                                                            : settings[i].value;
@@ -147,7 +164,7 @@ void DistributedGrid<Scalar>::agree(const DistributedConfig& config,
     ranks_.check(MPI_Iallreduce(MPI_IN_PLACE, least.data(), static_cast<int>(least.size()),
                                 MPI_DOUBLE, MPI_MIN, ranks_.communicator(), &request),
                  "MPI_Iallreduce");
-    ranks_.wait(request, "for all ranks to say their configuration");
+    ranks_.wait(request, buffer, "for all ranks to say their configuration");
     for (std::size_t i = 0; i < settings.size(); ++i) {
         if (least[2 * i] != -least[2 * i + 1]) {
             throw RankError(std::string("The ranks disagree on ") + settings[i].name + ": from " +
@@ -164,17 +181,22 @@ void DistributedGrid<Scalar>::agree(const DistributedConfig& config,
 // --- Failure -------------------------------------------------------------------------------------
 
 template <class Scalar>
-void DistributedGrid<Scalar>::checkUse() const {
+void DistributedGrid<Scalar>::checkUse(bool isBegun) {
     if (!ranks_.failure().empty()) {
         throw RankError(ranks_.failure());
     }
+    if (isBegun != isBegun_) {
+        ranks_.fail(isBegun
+                        ? "It has called end() without begin()."
+                        : "It has called begin(), ask() or pairSum() between begin() and end().");
+    }
 }
 
-// Does the work; tells the other ranks where it throws.
+// Does what all ranks do together; tells the others where it throws.
 template <class Scalar>
 template <class Work>
-auto DistributedGrid<Scalar>::tellingFailure(const Work& work) {
-    checkUse();
+auto DistributedGrid<Scalar>::together(bool isBegun, const Work& work) {
+    checkUse(isBegun);
     try {
         return work();
     } catch (const std::exception& error) {
@@ -195,7 +217,7 @@ RankChanges DistributedGrid<Scalar>::update(ParallelFor parallelFor) {
 
 template <class Scalar>
 void DistributedGrid<Scalar>::begin() {
-    tellingFailure([&] {
+    together(false, [&] {
         cost_ = {};
         {
             const Timer timer(cost_.rebalanceSeconds);
@@ -206,28 +228,30 @@ void DistributedGrid<Scalar>::begin() {
         }
         const Timer timer(cost_.packSeconds);
         exchange_.start(here_->pack());
+        isBegun_ = true;
     });
 }
 
 template <class Scalar>
 RankChanges DistributedGrid<Scalar>::end(ParallelFor parallelFor) {
-    return tellingFailure([&] {
+    return together(true, [&] {
         {
             const Timer timer(cost_.waitSeconds);
             exchange_.finish("for the messages of this frame");
         }
         const Timer timer(cost_.pairSeconds);
         const RankChanges changes = here_->finish(exchange_.received(), parallelFor);
-        cost_.rank = here_->lastCost();
+        cost_.rankGrid = here_->lastCost();
+        isBegun_ = false;
         startLoads();
         return changes;
     });
 }
 
 template <class Scalar>
-void DistributedGrid<Scalar>::setLoad(double load) {
-    HASHPHASE_ASSERT(load >= 0, "A load is not negative.");
-    if (load >= 0) {
+void DistributedGrid<Scalar>::setLoad(std::optional<double> load) {
+    HASHPHASE_ASSERT(!load || *load >= 0, "A load is not negative.");
+    if (!load || *load >= 0) {
         givenLoad_ = load;
     }
 }
@@ -236,21 +260,23 @@ void DistributedGrid<Scalar>::setLoad(double load) {
 
 template <class Scalar>
 void DistributedGrid<Scalar>::startLoads() {
-    load_ = static_cast<std::uint64_t>(
-        std::min(givenLoad_.value_or(cost_.rank.load) / kLoadUnit, 0x1p46));
-    const auto start = [&](std::uint64_t& result, MPI_Op operation, MPI_Request& request) {
-        ranks_.check(MPI_Iallreduce(&load_, &result, 1, MPI_UINT64_T, operation,
+    const double load = givenLoad_.value_or(cost_.rankGrid.load) / kLoadUnit;
+    loads_->mine = {static_cast<std::uint64_t>(std::min(load, kMostLoad)),
+                    std::exchange(wantsCut_, false) ? 1U : 0U};
+    const auto start = [&](std::uint64_t* result, int count, MPI_Op operation,
+                           MPI_Request& request) {
+        ranks_.check(MPI_Iallreduce(loads_->mine.data(), result, count, MPI_UINT64_T, operation,
                                     ranks_.communicator(), &request),
                      "MPI_Iallreduce");
     };
-    start(loadSum_, MPI_SUM, loadRequests_[0]);
-    start(loadMost_, MPI_MAX, loadRequests_[1]);
+    start(&loads_->sum, 1, MPI_SUM, loadRequests_[0]);
+    start(loads_->most.data(), 2, MPI_MAX, loadRequests_[1]);
 }
 
 template <class Scalar>
 void DistributedGrid<Scalar>::waitForLoads() {
     for (MPI_Request& request : loadRequests_) {
-        ranks_.wait(request, "for the load of all ranks");
+        ranks_.wait(std::exchange(request, MPI_REQUEST_NULL), loads_, "for the load of all ranks");
     }
 }
 
@@ -258,15 +284,12 @@ void DistributedGrid<Scalar>::waitForLoads() {
 template <class Scalar>
 bool DistributedGrid<Scalar>::isTimeToRebalance() {
     waitForLoads();
-    if (loadSum_ > 0) {
-        cost_.imbalance =
-            static_cast<double>(loadMost_) * ranks_.count() / static_cast<double>(loadSum_);
+    if (loads_->sum > 0) {
+        cost_.imbalance = static_cast<double>(loads_->most[0]) * ranks_.count() /
+                          static_cast<double>(loads_->sum);
     }
-    if (ranks_.count() == 1 || std::isinf(config_.rebalanceAbove)) {
+    if (ranks_.count() == 1) {
         return false;
-    }
-    if (std::exchange(mustRebalance_, false)) {
-        return true;
     }
     // The frame that begins with a cut has the work of moving objects, too: the next one tells whether that has
     // helped. Where it has not, the next cut waits, ever longer.
@@ -275,63 +298,76 @@ bool DistributedGrid<Scalar>::isTimeToRebalance() {
         const bool hasHelped = cost_.imbalance < kHelpful * imbalanceBeforeCut_;
         restAfterCut_ = hasHelped ? 0 : std::min(2 * restAfterCut_ + 1, kLongestRest);
     }
-    if (cost_.imbalance <= config_.rebalanceAbove || framesSinceCut_ < 2 + restAfterCut_) {
-        return false;
+    const bool isUneven = cost_.imbalance > std::max(config_.rebalanceAbove, errorOfCuts()) &&
+                          framesSinceCut_ >= 2 + restAfterCut_;
+    const bool isAsked = std::exchange(isFirstToCut_, false) || loads_->most[1] > 0;
+    if (isUneven || isAsked) {
+        framesSinceCut_ = 0;
+        imbalanceBeforeCut_ = cost_.imbalance;
     }
-    framesSinceCut_ = 0;
-    imbalanceBeforeCut_ = cost_.imbalance;
-    return true;
+    return isUneven || isAsked;
+}
+
+template <class Scalar>
+double DistributedGrid<Scalar>::errorOfCuts() const noexcept {
+    return 1 + 4 / std::sqrt(static_cast<double>(samplesOfRank(ranks_.count())));
 }
 
 template <class Scalar>
 void DistributedGrid<Scalar>::rebalance() {
     using Point = std::array<double, 4>;
-    const std::uint32_t perRank =
-        std::clamp(kSamples / ranks_.count(), kLeastSamplesOfRank, kMostSamplesOfRank);
+    struct Buffers {
+        std::vector<Point> mine;
+        std::vector<Point> all;
+        std::vector<std::array<double, 2>> cuts;
+    };
+    const std::uint32_t perRank = samplesOfRank(ranks_.count());
+    const bool isRoot = ranks_.rank() == 0;
     // As many of each rank, so that nobody has to ask how many; the rest weigh nothing.
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Point> mine(perRank, {kNan, kNan, kNan, 0});
+    const auto buffers = std::make_shared<Buffers>();
+    buffers->mine.resize(perRank, {kNan, kNan, kNan, 0});
+    buffers->all.resize(isRoot ? std::size_t{perRank} * ranks_.count() : 0);
+    buffers->cuts.resize(ranks_.count() - 1);
     const double load = here_->frame() == 0 ? static_cast<double>(here_->size())
-                                            : static_cast<double>(load_) * kLoadUnit;
+                                            : static_cast<double>(loads_->mine[0]) * kLoadUnit;
     const std::size_t enough = here_->size() / 2 + kLeastSamplesOfRank;
     const auto samples = here_->sampleLoad(std::min<std::size_t>(perRank, enough), load);
-    std::transform(
-        samples.begin(), samples.end(), mine.begin(), [](const WeightedPoint<Scalar>& sample) {
-            return Point{static_cast<double>(sample.at[0]), static_cast<double>(sample.at[1]),
-                         static_cast<double>(sample.at[2]), sample.weight};
-        });
-    const bool isRoot = ranks_.rank() == 0;
-    std::vector<Point> all(isRoot ? std::size_t{perRank} * ranks_.count() : 0);
+    std::transform(samples.begin(), samples.end(), buffers->mine.begin(),
+                   [](const WeightedPoint<Scalar>& sample) {
+                       return Point{static_cast<double>(sample.at[0]),
+                                    static_cast<double>(sample.at[1]),
+                                    static_cast<double>(sample.at[2]), sample.weight};
+                   });
     MPI_Request request = MPI_REQUEST_NULL;
-    ranks_.check(
-        MPI_Igather(mine.data(), static_cast<int>(4 * perRank), MPI_DOUBLE, all.data(),
-                    static_cast<int>(4 * perRank), MPI_DOUBLE, 0, ranks_.communicator(), &request),
-        "MPI_Igather");
-    ranks_.wait(request, "for samples of the load of all ranks");
+    ranks_.check(MPI_Igather(buffers->mine.data(), static_cast<int>(4 * perRank), MPI_DOUBLE,
+                             buffers->all.data(), static_cast<int>(4 * perRank), MPI_DOUBLE, 0,
+                             ranks_.communicator(), &request),
+                 "MPI_Igather");
+    ranks_.wait(request, buffers, "for samples of the load of all ranks");
     // One rank cuts for all: so the cuts are the same, whatever compiled it.
-    std::vector<std::array<double, 2>> cuts(ranks_.count() - 1);
     if (isRoot) {
         std::vector<WeightedPoint<Scalar>> points;
-        points.reserve(all.size());
-        for (const Point& point : all) {
+        points.reserve(buffers->all.size());
+        for (const Point& point : buffers->all) {
             points.push_back(
-                {Vector3<double>(point[0], point[1], point[2]).cast<Scalar>(), point[3]});
+                {Vector3<double>(point[0], point[1], point[2]).template cast<Scalar>(), point[3]});
         }
         const bool isFirst = here_->frame() == 0;
         const auto partition = Partition<Scalar>::balanced(ranks_.count(), points,
                                                            isFirst ? nullptr : &here_->partition());
         std::transform(
-            partition.cuts().begin(), partition.cuts().end(), cuts.begin(),
+            partition.cuts().begin(), partition.cuts().end(), buffers->cuts.begin(),
             [](const Cut<Scalar>& cut) {
                 return std::array{static_cast<double>(cut.at), static_cast<double>(cut.axis)};
             });
     }
-    ranks_.check(MPI_Ibcast(cuts.data(), static_cast<int>(2 * cuts.size()), MPI_DOUBLE, 0,
-                            ranks_.communicator(), &request),
+    ranks_.check(MPI_Ibcast(buffers->cuts.data(), static_cast<int>(2 * buffers->cuts.size()),
+                            MPI_DOUBLE, 0, ranks_.communicator(), &request),
                  "MPI_Ibcast");
-    ranks_.wait(request, "for the new parts of space");
+    ranks_.wait(request, buffers, "for the new parts of space");
     std::vector<Cut<Scalar>> typed;
-    for (const auto& cut : cuts) {
+    for (const auto& cut : buffers->cuts) {
         typed.push_back({static_cast<Scalar>(cut[0]), static_cast<std::uint32_t>(cut[1])});
     }
     here_->setPartition(Partition<Scalar>(typed));
@@ -341,7 +377,7 @@ void DistributedGrid<Scalar>::rebalance() {
 
 template <class Scalar>
 Answers<Scalar> DistributedGrid<Scalar>::ask(std::span<const Question<Scalar>> questions) {
-    return tellingFailure([&] {
+    return together(false, [&] {
         exchange_.start(questions_.pack(*here_, questions));
         exchange_.finish("for the questions of all ranks");
         exchange_.start(questions_.answer(*here_, exchange_.received()));
@@ -352,15 +388,16 @@ Answers<Scalar> DistributedGrid<Scalar>::ask(std::span<const Question<Scalar>> q
 
 template <class Scalar>
 PairSum DistributedGrid<Scalar>::pairSum() {
-    return tellingFailure([&] {
+    return together(false, [&] {
         const PairSum mine = here_->pairSum();
-        std::array<std::uint64_t, 2> numbers{mine.count, mine.hash};
+        const auto numbers = std::make_shared<std::array<std::uint64_t, 2>>();
+        *numbers = {mine.count, mine.hash};
         MPI_Request request = MPI_REQUEST_NULL;
-        ranks_.check(MPI_Iallreduce(MPI_IN_PLACE, numbers.data(), 2, MPI_UINT64_T, MPI_SUM,
+        ranks_.check(MPI_Iallreduce(MPI_IN_PLACE, numbers->data(), 2, MPI_UINT64_T, MPI_SUM,
                                     ranks_.communicator(), &request),
                      "MPI_Iallreduce");
-        ranks_.wait(request, "for the sums of all ranks");
-        return PairSum{numbers[0], numbers[1]};
+        ranks_.wait(request, numbers, "for the sums of all ranks");
+        return PairSum{(*numbers)[0], (*numbers)[1]};
     });
 }
 

@@ -1,39 +1,32 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/mpi/detail/ranks.hpp>
 
+#include <exception>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace hashphase::detail {
 namespace {
 
-struct Abandoned {
-    std::vector<std::byte> bytes;
-    MPI_Request request;
-};
-
-std::vector<Abandoned>& abandonedMessages() {
-    static std::vector<Abandoned> messages;
-    return messages;
-}
-
-// Why MPI cannot be called, or nothing.
-std::string mpiFault() {
-    int isReady = 0;
-    int isOver = 0;
-    MPI_Initialized(&isReady);
-    MPI_Finalized(&isOver);
-    if (isReady == 0 || isOver != 0) {
-        return "A grid over MPI lives between MPI_Init() and MPI_Finalize().";
-    }
-    return "";
+std::vector<std::shared_ptr<void>>& abandonedBuffers() {
+    static std::vector<std::shared_ptr<void>> buffers;
+    return buffers;
 }
 
 }  // namespace
 
+bool Ranks::isMpiReady() noexcept {
+    int isReady = 0;
+    int isOver = 0;
+    MPI_Initialized(&isReady);
+    MPI_Finalized(&isOver);
+    return isReady != 0 && isOver == 0;
+}
+
 Ranks::Ranks(MPI_Comm communicator, double seconds) : seconds_(seconds) {
-    if (const std::string fault = mpiFault(); !fault.empty()) {
-        throw RankError(fault);
+    if (!isMpiReady()) {
+        throw RankError("A grid over MPI lives between MPI_Init() and MPI_Finalize().");
     }
     if (communicator == MPI_COMM_NULL) {
         throw RankError("A grid over MPI needs a communicator; this is MPI_COMM_NULL.");
@@ -46,16 +39,16 @@ Ranks::Ranks(MPI_Comm communicator, double seconds) : seconds_(seconds) {
     rank_ = static_cast<std::uint32_t>(rank);
     count_ = static_cast<std::uint32_t>(count);
     MPI_Request duplication = MPI_REQUEST_NULL;
-    MPI_Comm duplicate = MPI_COMM_NULL;
-    check(MPI_Comm_idup(communicator, &duplicate, &duplication), "MPI_Comm_idup");
-    wait(duplication, "for all ranks to make the grid");
-    communicator_ = duplicate;
+    const auto duplicate = std::make_shared<MPI_Comm>(MPI_COMM_NULL);
+    check(MPI_Comm_idup(communicator, duplicate.get(), &duplication), "MPI_Comm_idup");
+    wait(duplication, duplicate, "for all ranks to make the grid");
+    communicator_ = *duplicate;
     MPI_Comm_set_errhandler(communicator_, MPI_ERRORS_RETURN);
 }
 
 Ranks::~Ranks() {
     // What has failed may have messages under way, for which nobody waits.
-    if (failure_.empty() && mpiFault().empty()) {
+    if (failure_.empty() && isMpiReady()) {
         MPI_Comm_free(&communicator_);
     }
 }
@@ -77,19 +70,24 @@ bool Ranks::isDone(MPI_Request& request) {
     return isDone != 0;
 }
 
-void Ranks::wait(MPI_Request& request, const char* doing) {
-    restartClock();
-    while (!isDone(request)) {
-        idle(doing);
+void Ranks::wait(MPI_Request request, const std::shared_ptr<void>& buffer, const char* doing) {
+    try {
+        restartClock();
+        while (!isDone(request)) {
+            idle(doing);
+        }
+    } catch (...) {
+        abandon(buffer);
+        throw;
     }
 }
 
-void Ranks::idle(const std::string& doing) {
+void Ranks::idle(const char* doing) {
     listen();
     const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - since_;
     if (seconds_ > 0 && waited.count() > seconds_) {
         fail("It has waited " + std::to_string(static_cast<int>(waited.count())) + " s " + doing +
-             ": another rank has stopped, or has not made the same calls.");
+             ": another rank has stopped, is slow, or has not made the same calls.");
     }
     std::this_thread::yield();
 }
@@ -118,21 +116,23 @@ void Ranks::tellFailure(const std::string& sentence) noexcept {
     if (!failure_.empty()) {
         return;
     }
-    failure_ =
-        "Rank " + std::to_string(rank_) + " of " + std::to_string(count_) + " gave up. " + sentence;
-    if (communicator_ == MPI_COMM_NULL || !mpiFault().empty()) {
-        return;
-    }
-    for (std::uint32_t rank = 0; rank < count_; ++rank) {
-        if (rank == rank_) {
-            continue;
+    try {
+        failure_ = "Rank " + std::to_string(rank_) + " of " + std::to_string(count_) +
+                   " gave up. " + sentence;
+        if (communicator_ == MPI_COMM_NULL || !isMpiReady()) {
+            return;
         }
-        const auto* begin = reinterpret_cast<const std::byte*>(failure_.data());
-        std::vector<std::byte> bytes(begin, begin + failure_.size());
-        MPI_Request request = MPI_REQUEST_NULL;
-        MPI_Isend(bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, static_cast<int>(rank),
-                  kFailureTag, communicator_, &request);
-        abandon(std::move(bytes), request);
+        const auto text = std::make_shared<std::string>(failure_);
+        abandon(text);
+        for (std::uint32_t rank = 0; rank < count_; ++rank) {
+            MPI_Request request = MPI_REQUEST_NULL;
+            if (rank != rank_) {
+                MPI_Isend(text->data(), static_cast<int>(text->size()), MPI_CHAR,
+                          static_cast<int>(rank), kFailureTag, communicator_, &request);
+            }
+        }
+    } catch (const std::exception&) {
+        failure_ = "no memory";  // short enough to need none; the others lose their patience
     }
 }
 
@@ -141,8 +141,12 @@ void Ranks::fail(const std::string& sentence) {
     throw RankError(failure_);
 }
 
-void Ranks::abandon(std::vector<std::byte>&& bytes, MPI_Request request) {
-    abandonedMessages().push_back({std::move(bytes), request});
+void Ranks::abandon(std::shared_ptr<void> buffer) noexcept {
+    try {
+        abandonedBuffers().push_back(buffer);
+    } catch (const std::exception&) {
+        static_cast<void>(new std::shared_ptr<void>(std::move(buffer)));
+    }
 }
 
 }  // namespace hashphase::detail

@@ -12,8 +12,8 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
-#include <vector>
 
 namespace hashphase::detail {
 
@@ -33,14 +33,15 @@ public:
     /// Throws RankError where a call has not returned MPI_SUCCESS.
     void check(int code, const char* call);
 
-    /// Waits for the request, which is void afterwards. `doing` says in an error what was waited for.
-    void wait(MPI_Request& request, const char* doing);
+    /// Waits for a request of which MPI reads and writes `buffer`. `doing` says in an error what was waited for. Where
+    /// it throws, the buffer is kept: MPI may still use it.
+    void wait(MPI_Request request, const std::shared_ptr<void>& buffer, const char* doing);
     /// Tests a request once.
     [[nodiscard]] bool isDone(MPI_Request& request);
 
     /// To be called again and again while nothing happens: throws RankError when another rank has given up, or
     /// has not been heard of for too long since restartClock(), and lets others run.
-    void idle(const std::string& doing);
+    void idle(const char* doing);
     void listen();
     void restartClock() noexcept { since_ = std::chrono::steady_clock::now(); }
 
@@ -50,8 +51,11 @@ public:
     [[noreturn]] void fail(const std::string& sentence);
     [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
 
-    /// Keeps what MPI may still read, although nobody waits for it any more.
-    static void abandon(std::vector<std::byte>&& bytes, MPI_Request request);
+    /// Keeps what MPI may still use, although nobody waits for it any more, to the end of the program.
+    static void abandon(std::shared_ptr<void> buffer) noexcept;
+
+    /// Whether MPI_Init() has been called, and MPI_Finalize() not yet.
+    [[nodiscard]] static bool isMpiReady() noexcept;
 
     static constexpr int kFailureTag = 0;
     static constexpr int kFirstTag = 1;

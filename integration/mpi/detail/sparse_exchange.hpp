@@ -13,6 +13,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -25,14 +27,17 @@ public:
     SparseExchange& operator=(const SparseExchange&) = delete;
     ~SparseExchange();
 
-    /// Begins to send the parcels; copies their bytes. All ranks begin and end their exchanges in the same order.
+    /// Begins to send the parcels; copies their bytes. All ranks begin and end their exchanges in the same order, one
+    /// after the other (asserted).
     void start(std::span<const Parcel> parcels);
 
     /// Receives what has come, and returns whether the exchange has ended. Never blocks.
     /// Throws RankError when another rank has given up.
     bool poll();
 
-    /// Polls until the end. `doing` says in an error what was waited for.
+    [[nodiscard]] bool isUnderWay() const noexcept { return isUnderWay_; }
+
+    /// Polls until the end, from now on with patience. `doing` says in an error what was waited for.
     void finish(const char* doing);
 
     /// What has been received, sorted by rank. Valid until start().
@@ -46,8 +51,17 @@ private:
         std::uint32_t rank = 0;
         std::vector<std::byte> bytes;
     };
+    // What MPI reads and writes; kept where an exchange does not end.
+    struct Buffers {
+        std::vector<Message> sent;
+        std::vector<MPI_Request> sends;
+        std::deque<Message> received;  // none moves while MPI writes to it
+        std::vector<MPI_Request> receives;
+    };
 
-    void receive(MPI_Message message, const MPI_Status& status);
+    void receiveWhatHasCome();
+    [[nodiscard]] bool areDone(std::vector<MPI_Request>& requests);
+    void joinPieces();
     [[nodiscard]] int tag() const noexcept {
         return Ranks::kFirstTag + static_cast<int>(number_ & 1);
     }
@@ -58,10 +72,10 @@ private:
     std::uint64_t number_ =
         0;  // of the exchange; the next one may begin elsewhere before this one has ended here
     bool isUnderWay_ = false;
-    std::vector<Message> sent_;
-    std::vector<MPI_Request> sends_;
+    std::shared_ptr<Buffers> buffers_ = std::make_shared<Buffers>();
     MPI_Request barrier_ = MPI_REQUEST_NULL;
-    std::vector<Message> received_;
+    bool hasMet_ = false;  // at the barrier
+    std::vector<Message> joined_;
     std::vector<Parcel> parcels_;
 };
 

@@ -174,8 +174,28 @@ TEST(RankQuestions, RefuseBytesThatAreNone) {
         } catch (const RankError& error) {
             EXPECT_NE("", std::string(error.what()));
         }
+    }
+    const Parcel ofNobody{7, bytes};
+    EXPECT_THROW(answering.answer(*world.ranks[1], std::span(&ofNobody, 1)), RankError);
+
+    // Answers, of one object each.
+    const Parcel right{0, bytes};
+    const auto answered = answering.answer(*world.ranks[1], std::span(&right, 1));
+    ASSERT_EQ(1U, answered.size());
+    const std::vector<std::byte> answer(answered[0].bytes.begin(), answered[0].bytes.end());
+    for (std::size_t size = 0; size < answer.size(); ++size) {
+        const Parcel parcel{1, std::span(answer).first(size)};
         EXPECT_THROW(asking.finish(std::span(&parcel, 1)), RankError);
     }
+    for (const std::size_t at : {0U, 4U, 12U, 16U}) {  // what it is, bytes, question, number
+        auto changed = answer;
+        changed[at] ^= std::byte{0x3f};
+        const Parcel parcel{1, changed};
+        EXPECT_THROW(asking.finish(std::span(&parcel, 1)), RankError) << at;
+    }
+    asking.pack(*world.ranks[0], std::span(&question, 1));
+    const Parcel parcel{1, answer};
+    EXPECT_EQ(1U, asking.finish(std::span(&parcel, 1)).of(0).size());
 }
 
 }  // namespace

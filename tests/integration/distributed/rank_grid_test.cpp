@@ -155,6 +155,35 @@ TEST(RankGrid, SaysWhereItsObjectsHaveGone) {
     world.check();
 }
 
+// What has died is named though other objects have taken the places of those that are gone.
+TEST(RankGrid, NamesDeadPairsToTheEndOfTheFrame) {
+    RankGrid<float> grid(0, {});
+    const ProxyId first = grid.add(GlobalId{10}, makeBox<float>(0, 0, 0, 1, 1, 1));
+    grid.add(GlobalId{11}, makeBox<float>(0, 0, 0, 1, 1, 1));
+    grid.pack();
+    grid.finish({});
+    grid.remove(first);
+    grid.pack();
+    const RankChanges changes = grid.finish({});
+    ASSERT_EQ(1U, changes.pairs.died.size());
+    const ProxyId next = grid.add(GlobalId{99}, makeBox<float>(5, 0, 0, 6, 1, 1));
+    EXPECT_EQ(first.index, next.index);
+    EXPECT_EQ((GlobalPair{GlobalId{10}, GlobalId{11}}), grid.globalPair(changes.pairs.died[0]));
+    EXPECT_EQ(GlobalId{99}, grid.globalId(next));
+}
+
+TEST(RankGrid, IsNotUpToDateWithAnotherPartition) {
+    RankWorld<float> world(Partition<float>(std::vector<Cut<float>>{{0, 0}}));
+    world.add(0, makeBox<float>(-1, 0, 0, 1, 1, 1));
+    EXPECT_FALSE(world.ranks[0]->isUpToDate());
+    world.update();
+    EXPECT_TRUE(world.ranks[0]->isUpToDate());
+    world.setPartition(Partition<float>(std::vector<Cut<float>>{{5, 0}}));
+    EXPECT_FALSE(world.ranks[0]->isUpToDate());
+    world.update();
+    EXPECT_TRUE(world.ranks[1]->isUpToDate());
+}
+
 // Told is what has changed, at the border alone.
 TEST(RankGrid, TellsNothingOfWhatStandsStillOrLiesWithin) {
     RankWorld<float> world(Partition<float>(std::vector<Cut<float>>{{0, 0}}));

@@ -86,8 +86,9 @@ public:
             }
         }
         Events reported;
-        std::vector<Migration> departed;
-        std::vector<Migration> arrived;
+        using Moves = std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<GlobalId>>;
+        Moves departed;  // by from and to, in order
+        Moves arrived;
         for (const auto& rank : ranks) {
             auto& parcels = received[rank->rank()];
             std::reverse(parcels.begin(), parcels.end());  // any order will do
@@ -98,14 +99,22 @@ public:
             for (const ProxyPair& pair : changes.pairs.died) {
                 reported.died.push_back(rank->globalPair(pair));
             }
-            departed.insert(departed.end(), changes.departed.begin(), changes.departed.end());
+            for (const Migration& one : changes.departed) {
+                departed[{rank->rank(), one.rank}].push_back(one.object);
+                EXPECT_EQ(one.object, rank->globalId(one.proxy));
+                EXPECT_EQ(rank->grid().contains(one.proxy), !rank->find(one.object).isNull());
+            }
+            std::uint32_t lastRank = 0;
             for (const Migration& one : changes.arrived) {
-                arrived.push_back(one);
+                EXPECT_LE(lastRank, one.rank);
+                lastRank = one.rank;
+                arrived[{one.rank, rank->rank()}].push_back(one.object);
+                EXPECT_EQ(one.proxy, rank->find(one.object));
                 objects.at(one.object).rank = rank->rank();
                 objects.at(one.object).proxy = one.proxy;
             }
         }
-        EXPECT_EQ(departed.size(), arrived.size());
+        EXPECT_EQ(departed, arrived);
         EXPECT_EQ(wholeEvents(), reported.sort());
     }
 

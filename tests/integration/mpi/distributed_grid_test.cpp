@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -206,6 +207,75 @@ TEST(DistributedGrid, EqualsOneGridInEveryFrame) {
 
 TEST(DistributedGrid, EqualsOneGridInDoublePrecision) {
     checkAllKinds<double>(500, 10);
+}
+
+// Runs a loop in parts, from the last to the first.
+void backwards(std::size_t count, std::size_t /*grain*/, LoopBody body) {
+    constexpr std::size_t kParts = 3;
+    for (std::size_t part = kParts; part-- > 0;) {
+        const std::size_t begin = count * part / kParts;
+        const std::size_t end = count * (part + 1) / kParts;
+        if (begin < end) {
+            body(begin, end);
+        }
+    }
+}
+
+// Each rank removes and adds objects of its own, and writes into payloads what all can compute.
+TEST(DistributedGrid, CarriesPayloadsOfObjectsThatComeAndGo) {
+    DistributedConfig config;
+    config.rankGrid.payloadBytes = 16;
+    DistributedGrid<float> grid(MPI_COMM_WORLD, config);
+    Random random(static_cast<std::uint64_t>(rankHere()));
+    std::uint64_t next = static_cast<std::uint64_t>(rankHere()) << 32;
+    const auto write = [&](ProxyId id, std::uint64_t frame) {
+        const std::array<std::uint64_t, 2> payload{grid.here().globalId(id).value, frame};
+        std::memcpy(grid.payload(id).data(), payload.data(), sizeof(payload));
+    };
+    for (std::uint64_t frame = 0; frame < 30; ++frame) {
+        for (int i = 0; i < 40; ++i) {
+            const Vector3<float> at = random.pointIn(0, 20).cast<float>();
+            write(grid.add(GlobalId{next++}, Aabb<float>(at, at.array() + 1)), frame);
+        }
+        grid.here().forEachOwned([&](ProxyId id, const Aabb<float>& box) {
+            const Vector3<float> by = random.pointIn(-0.5, 0.5).cast<float>();
+            if (random.chance(0.1)) {
+                grid.remove(id);
+            } else if (random.chance(0.7)) {
+                grid.move(id, Aabb<float>(box.min() + by, box.max() + by));
+                write(id, frame);
+            }
+        });
+        grid.update(backwards);
+        EXPECT_EQ("", grid.here().validate());
+        grid.here().grid().forEach([&](ProxyId id, const Aabb<float>&) {
+            std::array<std::uint64_t, 2> payload{};
+            std::memcpy(payload.data(), grid.here().readPayload(id).data(), sizeof(payload));
+            EXPECT_EQ(grid.here().globalId(id).value, payload[0]);
+            EXPECT_LE(payload[1], frame);
+        });
+        // By brute force: the pairs of all ranks.
+        std::vector<GlobalPair> mine;
+        grid.here().collect(mine);
+        EXPECT_EQ(grid.pairSum().count, joined(mine).size());
+    }
+}
+
+TEST(DistributedGrid, IsCutAgainWhenARankAsksForIt) {
+    DistributedConfig config;
+    config.rebalanceAbove = std::numeric_limits<double>::infinity();
+    SharedWorld<float> world(MovingBoxes<float>::Kind::uniform, 1000, config);
+    std::vector<bool> cuts;
+    for (int frame = 0; frame < 5; ++frame) {
+        if (frame == 2 && rankHere() == rankCount() - 1) {
+            world.grid.balanceNow();
+        }
+        world.updateAndCheck();
+        cuts.push_back(world.grid.lastCost().wasRebalanced);
+        world.advance();
+    }
+    const bool isShared = rankCount() > 1;
+    EXPECT_EQ(std::vector<bool>({isShared, false, false, isShared, false}), cuts);
 }
 
 TEST(DistributedGrid, EqualsOneGridWhereMessagesAreSentInPieces) {
