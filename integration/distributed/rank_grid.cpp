@@ -143,7 +143,8 @@ void RankGrid<Scalar>::remove(ProxyId id) {
     if (!canChange(id)) {
         return;
     }
-    touch(id.index);
+    detail::ensureCapacity(nextFormerNames_, nextFormerNames_.size() + 1);
+    touch(id.index);  // all memory is there now
     if ((marks_[id.index] & kBorn) != 0) {
         marks_[id.index] = kTouched;  // nobody knows of it
     } else {

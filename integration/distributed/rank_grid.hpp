@@ -20,6 +20,7 @@
 // Frame      Changes are visible here at once, and on other ranks after finish(). Queries over all ranks and sums
 //            are asked after finish(), before the next change.
 // Result     the same for the same calls: parcels are taken in the order of their ranks
+// Memory     Where it runs out in add(), move(), remove() or payload(), nothing has happened.
 // Failure    finish() throws RankError where a parcel is not what a rank can have sent, which it names.
 //            Where it throws, or memory runs out in pack() or finish(), this grid is of no more use.
 // Threads    everything needs this object for itself
