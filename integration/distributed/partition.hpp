@@ -85,8 +85,8 @@ public:
     /// The rank whose region the point [m] lies in. A NaN counts as above every cut. Cost: O(log ranks).
     [[nodiscard]] std::uint32_t rankOf(const Vector3<Scalar>& point) const noexcept;
 
-    /// The region of a rank [m]: points with min() <= point < max(). Without a point where a cut lies outside of
-    /// what it cuts.
+    /// The region of a rank [m]: points with min() <= point < max(). Empty where a cut lies outside of the region
+    /// that it divides.
     [[nodiscard]] Aabb<Scalar> region(std::uint32_t rank) const noexcept;
 
     /// Calls visit(rank), ascending, for each rank whose region the hull of the box touches; for none where

@@ -30,7 +30,7 @@ struct Question {
     enum class Shape : std::uint8_t { box, sphere, ray };
 
     Shape shape = Shape::box;
-    Aabb<Scalar> extent;                             ///< the box; a ray's fatness
+    Aabb<Scalar> extent;  ///< the box; or the box that moves along a ray, relative to it [m]
     Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< a ray's first end; a ball's middle
     Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< a ray's other end
     Scalar radius = 0;                               ///< a ball's
@@ -80,7 +80,7 @@ struct FoundObject {
     friend constexpr auto operator<=>(const FoundObject&, const FoundObject&) = default;
 };
 
-/// The answers to all questions of this rank. Valid until the next finish().
+/// The answers to all questions of this rank. Valid until the next RankQuestions::finish().
 template <class Scalar>
 struct Answers {
     std::span<const FoundObject<Scalar>> found;

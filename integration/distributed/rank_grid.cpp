@@ -11,6 +11,7 @@
 #include <broadphase/regions.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace hashphase {
 namespace {

@@ -23,7 +23,7 @@
 // Memory     Where it runs out in add(), move(), remove() or payload(), nothing has happened.
 // Failure    finish() throws RankError where a parcel is not what a rank can have sent, which it names.
 //            Where it throws, or memory runs out in pack() or finish(), this grid is of no more use.
-// Threads    everything needs this object for itself
+// Threads    Queries of grid() may run on several threads. Everything else needs this object for itself.
 // Misuse     pack() and finish() in another order, changes between them, and ids that are stale or, where only
 //            objects may be, ghosts: asserted, and do nothing.
 
@@ -75,7 +75,7 @@ struct Parcel {
 /// An object that has moved from one rank to another.
 struct Migration {
     GlobalId object;
-    ProxyId proxy;           ///< here; of an object that has gone a ghost's, or stale
+    ProxyId proxy;           ///< on this rank; once the object has gone that of its ghost, or stale
     std::uint32_t rank = 0;  ///< from where it has come, or where it has gone
 };
 
@@ -116,7 +116,7 @@ public:
     /// Adds an object, here, wherever its box is: the next finish() moves it to its rank. Its payload is zeros.
     /// `groups` are as in Grid::setGroups(), and stay. Throws std::invalid_argument where this rank has an object
     /// or a ghost of this id; finish() tells of ids that other ranks have given as well, where such two objects
-    /// meet. Cost: O(1) amortised.
+    /// meet. Throws std::length_error beyond 2^28 proxies. Cost: O(1) amortised.
     ProxyId add(GlobalId object, const Box& box, const ProxyGroups& groups = {});
 
     /// Sets the box of an object that lives here. Cost: O(1).
@@ -149,8 +149,8 @@ public:
     /// The rank on which the object lives, of a ghost or an object of this grid (asserted).
     [[nodiscard]] std::uint32_t homeOf(ProxyId id) const;
 
-    /// The object's id on all ranks, of an object or ghost here; and, until the next finish(), of those that were
-    /// removed here in the frame that the last one has ended. Others are asserted, and have the id 0.
+    /// The object's id on all ranks. Also valid for proxies that the last frame has removed, until the next finish().
+    /// Others are asserted, and have the id 0.
     [[nodiscard]] GlobalId globalId(ProxyId id) const;
 
     /// The pair of objects that two proxies stand for.
@@ -189,7 +189,7 @@ public:
     /// Cost: follows what has changed at the region's border.
     std::span<const Parcel> pack();
 
-    /// Ends the frame with all parcels of this frame from the other ranks, in any order.
+    /// Ends the frame with all parcels of this frame from the other ranks, in any order. Throws RankError.
     /// Cost: Pairs::update(), and the parcels.
     RankChanges finish(std::span<const Parcel> received, ParallelFor parallelFor = serialFor);
 
@@ -203,8 +203,18 @@ public:
         return !isPacked_ && !isPartitionNew_ && pairs_.isUpToDate();
     }
 
-    /// Appends the pairs that this rank owns, sorted. Nothing has changed since finish() (asserted).
-    /// Cost: Pairs::collect().
+    /// Calls visit(const ProxyPair&) for each pair that this rank owns now, sorted by ProxyIds of this rank. One of the
+    /// two, or both, may be ghosts. Nothing has changed since finish() (asserted). Cost: Pairs::collect().
+    template <class Visit>
+    void forEachPair(const Visit& visit) const {
+        std::vector<ProxyPair> pairs;
+        collectHere(pairs);
+        for (const ProxyPair& pair : pairs) {
+            visit(pair);
+        }
+    }
+
+    /// Appends the same pairs by the ids of their objects, sorted by these.
     void collect(std::vector<GlobalPair>& pairs) const;
 
     /// The same pairs as a sum. Cost: Pairs::collect().
@@ -213,8 +223,8 @@ public:
     /// What the last frame cost.
     [[nodiscard]] const RankCost& lastCost() const noexcept { return cost_; }
 
-    /// Up to `count` objects that stand for those of this rank: their min corners, weighted by what a search from
-    /// them tests and finds, so that all weights together are `load`, by default lastCost().load.
+    /// Returns the min corners of up to `count` objects that live here, for Partition::balanced(). The weights estimate
+    /// the work of each; together they are `load`, by default lastCost().load.
     /// Cost: `count` box queries.
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count) const;
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count,
@@ -316,8 +326,7 @@ private:
     [[nodiscard]] const Box& boxBefore(ProxyId id) const noexcept;
     [[nodiscard]] const Box& boxNow(ProxyId id) const noexcept;
     void endFrame();
-    template <class Visit>
-    void forEachOwnedPair(const Visit& visit) const;
+    void collectHere(std::vector<ProxyPair>& pairs) const;
 
     std::uint32_t rank_;
     RankGridConfig config_;

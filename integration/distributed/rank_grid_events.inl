@@ -84,29 +84,23 @@ void RankGrid<Scalar>::reportPairs(const PairChanges& changes) {
 }
 
 template <class Scalar>
-template <class Visit>
-void RankGrid<Scalar>::forEachOwnedPair(const Visit& visit) const {
+void RankGrid<Scalar>::collectHere(std::vector<ProxyPair>& pairs) const {
     HASHPHASE_ASSERT(isUpToDate(), "Pairs are collected after finish(), before the next change.");
-    std::vector<ProxyPair> here;
-    pairs_.collect(here);
-    for (const ProxyPair& pair : here) {
-        if (ownsPair(pair)) {
-            visit(globalPair(pair));
-        }
-    }
+    pairs_.collect(pairs);
+    std::erase_if(pairs, [&](const ProxyPair& pair) { return !ownsPair(pair); });
 }
 
 template <class Scalar>
 void RankGrid<Scalar>::collect(std::vector<GlobalPair>& pairs) const {
     const auto begin = static_cast<std::ptrdiff_t>(pairs.size());
-    forEachOwnedPair([&](const GlobalPair& pair) { pairs.push_back(pair); });
+    forEachPair([&](const ProxyPair& pair) { pairs.push_back(globalPair(pair)); });
     std::sort(pairs.begin() + begin, pairs.end());
 }
 
 template <class Scalar>
 PairSum RankGrid<Scalar>::pairSum() const {
     PairSum sum;
-    forEachOwnedPair([&](const GlobalPair& pair) { sum.add(pair); });
+    forEachPair([&](const ProxyPair& pair) { sum.add(globalPair(pair)); });
     return sum;
 }
 

@@ -35,9 +35,10 @@ constexpr std::uint32_t samplesOfRank(std::uint32_t ranks) {
 constexpr std::uint32_t kLongestRest = 64;
 constexpr double kHelpful = 0.95;
 
-// Loads are added as whole numbers, whose sum is the same on all ranks.
-constexpr double kLoadUnit = 0x1p-10;
-constexpr double kMostLoad = 0x1p46;
+// Loads are added as whole numbers, whose sum is the same on all ranks: a millionth of a program's unit, or some
+// thousand tests of boxes.
+constexpr double kGivenLoadUnit = 0x1p-20;
+constexpr double kCountedLoadUnit = 0x1p10;
 
 class Timer {
 public:
@@ -186,9 +187,9 @@ void DistributedGrid<Scalar>::checkUse(bool isBegun) {
         throw RankError(ranks_.failure());
     }
     if (isBegun != isBegun_) {
-        ranks_.fail(isBegun
-                        ? "It has called end() without begin()."
-                        : "It has called begin(), ask() or pairSum() between begin() and end().");
+        ranks_.fail(isBegun ? "It has called end() without begin()."
+                            : "It has called begin(), ask(), sendHome() or pairSum() between "
+                              "begin() and end().");
     }
 }
 
@@ -260,8 +261,10 @@ void DistributedGrid<Scalar>::setLoad(std::optional<double> load) {
 
 template <class Scalar>
 void DistributedGrid<Scalar>::startLoads() {
-    const double load = givenLoad_.value_or(cost_.rankGrid.load) / kLoadUnit;
-    loads_->mine = {static_cast<std::uint64_t>(std::min(load, kMostLoad)),
+    const double load =
+        givenLoad_ ? *givenLoad_ / kGivenLoadUnit : cost_.rankGrid.load / kCountedLoadUnit;
+    const double most = 0x1p62 / ranks_.count();
+    loads_->mine = {static_cast<std::uint64_t>(std::min(load, most)),
                     std::exchange(wantsCut_, false) ? 1U : 0U};
     const auto start = [&](std::uint64_t* result, int count, MPI_Op operation,
                            MPI_Request& request) {
@@ -330,7 +333,7 @@ void DistributedGrid<Scalar>::rebalance() {
     buffers->all.resize(isRoot ? std::size_t{perRank} * ranks_.count() : 0);
     buffers->cuts.resize(ranks_.count() - 1);
     const double load = here_->frame() == 0 ? static_cast<double>(here_->size())
-                                            : static_cast<double>(loads_->mine[0]) * kLoadUnit;
+                                            : static_cast<double>(loads_->mine[0]);
     const std::size_t enough = here_->size() / 2 + kLeastSamplesOfRank;
     const auto samples = here_->sampleLoad(std::min<std::size_t>(perRank, enough), load);
     std::transform(samples.begin(), samples.end(), buffers->mine.begin(),
@@ -383,6 +386,16 @@ Answers<Scalar> DistributedGrid<Scalar>::ask(std::span<const Question<Scalar>> q
         exchange_.start(questions_.answer(*here_, exchange_.received()));
         exchange_.finish("for the answers of all ranks");
         return questions_.finish(exchange_.received());
+    });
+}
+
+template <class Scalar>
+std::span<const Contribution> DistributedGrid<Scalar>::sendHome(
+    std::span<const Contribution> forGhosts) {
+    return together(false, [&] {
+        exchange_.start(contributions_.pack(*here_, forGhosts));
+        exchange_.finish("for what other ranks send home");
+        return contributions_.finish(*here_, exchange_.received());
     });
 }
 

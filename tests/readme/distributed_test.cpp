@@ -6,8 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdio>
 #include <cstring>
+#include <span>
 #include <vector>
 
 namespace hashphase::test {
@@ -50,17 +52,13 @@ TEST(Distributed, PageIsRight) {
         grainsOfThisRank.push_back({i, static_cast<float>(i)});
     }
     std::size_t pairs = 0;
-    const auto collide = [&](const DistributedGrid<float>&, const PairChanges& changes) {
-        pairs += changes.born.size();
-    };
-    const auto moveOwned = [](DistributedGrid<float>& grid) {
-        grid.here().forEachOwned([&](ProxyId id, const Aabb<float>& box) {
-            grid.move(id, Aabb<float>(box.min().array() + 0.01F, box.max().array() + 0.01F));
-        });
+    const auto collide = [&](const ProxyPair&) { ++pairs; };
+    const auto moved = [](ProxyId, const Aabb<float>& box) {
+        return Aabb<float>(box.min().array() + 0.01F, box.max().array() + 0.01F);
     };
     const int frames = 3;
 #include <distributed_1.inl>
-    EXPECT_EQ(19U, pairs);
+    EXPECT_EQ(3 * 19U, pairs);
     {
 #include <distributed_2.inl>
         EXPECT_TRUE(here.isOwned(known));
@@ -70,18 +68,24 @@ TEST(Distributed, PageIsRight) {
         EXPECT_EQ(19U, all.size());
         EXPECT_EQ(19U, sum.count);
     }
+    std::vector<std::array<float, 3>> forces(here.grid().indexLimit());
+    const auto addForce = [&](ProxyId, std::span<const std::byte>) { ADD_FAILURE(); };
     {
 #include <distributed_4.inl>
+        EXPECT_TRUE(forGhosts.empty());
+    }
+    {
+#include <distributed_5.inl>
         EXPECT_EQ(1U, answers.of(1).size());
         EXPECT_EQ(2U, answers.of(2).size());
     }
     const auto thinkOfOtherThings = [] {};
     {
-#include <distributed_5.inl>
+#include <distributed_6.inl>
         EXPECT_TRUE(later.pairs.born.empty());
     }
     const double millisecondsOfThisRanksStep = 7;
-#include <distributed_6.inl>
+#include <distributed_7.inl>
     grid.update();
 }
 
@@ -91,7 +95,7 @@ TEST(Distributed, PartCarriedByOtherMeansIsRight) {
     const Aabb<float> box(Vector3<float>(0, 0, 0), Vector3<float>(1, 1, 1));
     const auto carry = [](std::uint32_t, std::span<const std::byte>) {};
     const std::vector<Parcel> receivedParcels;
-#include <distributed_7.inl>
+#include <distributed_8.inl>
     EXPECT_TRUE(reported.pairs.born.empty());
     EXPECT_EQ(1U, part.size());
 }

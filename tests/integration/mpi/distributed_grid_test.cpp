@@ -322,6 +322,38 @@ TEST(DistributedGrid, TakesTheLoadThatItIsTold) {
     EXPECT_EQ(4000, counts[0] + counts[1]);
 }
 
+// Each pair adds one to both of its objects; all that is found for ghosts comes home.
+TEST(DistributedGrid, SendsHomeWhatIsFoundForGhosts) {
+    SharedWorld<float> world(MovingBoxes<float>::Kind::log_sizes, 2000, {});
+    for (int frame = 0; frame < 5; ++frame) {
+        world.updateAndCheck();
+        const RankGrid<float>& here = world.grid.here();
+        std::vector<std::uint64_t> counts(here.grid().indexLimit());
+        here.forEachPair([&](const ProxyPair& pair) {
+            ++counts[pair.first.index];
+            ++counts[pair.second.index];
+        });
+        std::vector<Contribution> forGhosts;
+        here.grid().forEach([&](ProxyId id, const Aabb<float>&) {
+            if (!here.isOwned(id)) {
+                forGhosts.push_back({id, std::as_bytes(std::span(&counts[id.index], 1))});
+            }
+        });
+        for (const Contribution& one : world.grid.sendHome(forGhosts)) {
+            std::uint64_t more = 0;
+            ASSERT_EQ(sizeof(more), one.bytes.size());
+            std::memcpy(&more, one.bytes.data(), sizeof(more));
+            counts[one.proxy.index] += more;
+        }
+        // Of both objects of every pair: twice as many as there are pairs.
+        std::uint64_t sum = 0;
+        here.forEachOwned([&](ProxyId id, const Aabb<float>&) { sum += counts[id.index]; });
+        MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+        EXPECT_EQ(2 * world.grid.pairSum().count, sum);
+        world.advance();
+    }
+}
+
 TEST(DistributedGrid, DoesOtherWorkBetweenBeginAndEnd) {
     SharedWorld<float> world(MovingBoxes<float>::Kind::uniform, 1000, {});
     world.updateAndCheck();

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Zlib
+#include <integration/distributed/contributions.hpp>
+
+// A parcel: kMagic and the bytes that follow, then for each contribution the object's id, the number of its bytes,
+// and these.
+
+#include <broadphase/diagnostics.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace hashphase {
+namespace {
+
+constexpr std::uint32_t kContributionMagic = 0x68706331;  // "hpc1"
+constexpr std::size_t kBytesAt = 4;
+constexpr std::size_t kMostBytes = 65'536;
+
+[[noreturn]] void raiseBadContribution(const Parcel& parcel, const std::string& fault) {
+    throw RankError("What rank " + std::to_string(parcel.rank) + " has sent " + fault);
+}
+
+}  // namespace
+
+template <class Scalar>
+std::span<const Parcel> Contributions::pack(const RankGrid<Scalar>& grid,
+                                            std::span<const Contribution> forGhosts) {
+    for (const std::uint32_t rank : destinations_) {
+        writers_[rank].clear();
+    }
+    destinations_.clear();
+    parcels_.clear();
+    writers_.resize(std::max<std::size_t>(writers_.size(), grid.partition().rankCount()));
+    for (const Contribution& one : forGhosts) {
+        const bool isGhost = grid.grid().contains(one.proxy) && !grid.isOwned(one.proxy);
+        HASHPHASE_ASSERT(isGhost, "Contributions are sent for ghosts: what lives here needs none.");
+        HASHPHASE_ASSERT(one.bytes.size() <= kMostBytes,
+                         "A contribution has at most 65,536 bytes.");
+        if (!isGhost || one.bytes.size() > kMostBytes) {
+            continue;
+        }
+        const std::uint32_t home = grid.homeOf(one.proxy);
+        detail::ByteWriter& writer = writers_[home];
+        if (writer.bytes().empty()) {
+            destinations_.push_back(home);
+            writer.write(kContributionMagic);
+            writer.write(std::uint64_t{0});  // at kBytesAt, when it is known
+        }
+        writer.write(grid.globalId(one.proxy).value);
+        writer.write(static_cast<std::uint32_t>(one.bytes.size()));
+        writer.write(one.bytes.data(), one.bytes.size());
+    }
+    std::sort(destinations_.begin(), destinations_.end());
+    for (const std::uint32_t rank : destinations_) {
+        writers_[rank].rewrite(kBytesAt, std::uint64_t{writers_[rank].bytes().size()});
+        parcels_.push_back({rank, writers_[rank].bytes()});
+    }
+    return parcels_;
+}
+
+template <class Scalar>
+std::span<const Contribution> Contributions::finish(const RankGrid<Scalar>& grid,
+                                                    std::span<const Parcel> received) {
+    std::vector<Parcel> sorted(received.begin(), received.end());
+    std::sort(sorted.begin(), sorted.end(),
+              [](const Parcel& a, const Parcel& b) { return a.rank < b.rank; });
+    received_.clear();
+    for (const Parcel& parcel : sorted) {
+        detail::ByteReader reader(parcel.bytes);
+        const auto magic = reader.read<std::uint32_t>();
+        const auto size = reader.read<std::uint64_t>();
+        if (reader.isTorn() || magic != kContributionMagic) {
+            raiseBadContribution(parcel, "is no contribution of this version.");
+        }
+        if (size != parcel.bytes.size()) {
+            raiseBadContribution(parcel, "says that it has " + std::to_string(size) +
+                                             " bytes, and has " +
+                                             std::to_string(parcel.bytes.size()) + ".");
+        }
+        while (reader.left() > 0) {
+            const GlobalId object{reader.read<std::uint64_t>()};
+            const auto count = reader.read<std::uint32_t>();
+            if (reader.isTorn() || count > reader.left()) {
+                raiseBadContribution(parcel, "ends within a contribution.");
+            }
+            const ProxyId proxy = grid.find(object);
+            if (!grid.isOwned(proxy)) {
+                raiseBadContribution(parcel, "is for the object " + std::to_string(object.value) +
+                                                 ", which does not live here.");
+            }
+            received_.push_back({proxy, reader.rest().first(count), parcel.rank});
+            reader.skip(count);
+        }
+    }
+    return received_;
+}
+
+template HASHPHASE_DISTRIBUTED_EXPORT std::span<const Parcel> Contributions::pack(
+    const RankGrid<float>&, std::span<const Contribution>);
+template HASHPHASE_DISTRIBUTED_EXPORT std::span<const Parcel> Contributions::pack(
+    const RankGrid<double>&, std::span<const Contribution>);
+template HASHPHASE_DISTRIBUTED_EXPORT std::span<const Contribution> Contributions::finish(
+    const RankGrid<float>&, std::span<const Parcel>);
+template HASHPHASE_DISTRIBUTED_EXPORT std::span<const Contribution> Contributions::finish(
+    const RankGrid<double>&, std::span<const Parcel>);
+
+}  // namespace hashphase
