@@ -229,10 +229,6 @@ int report(const SwarmResult& result, const std::optional<SingleResult>& alone,
 
 int runRank(const SwarmOptions& options, SwarmKind kind, Console& console, const MpiSession& mpi) {
     const bool isFirst = mpi.rank == 0;
-    if (options.ranks != 0 && options.ranks != static_cast<std::uint32_t>(mpi.ranks)) {
-        throw InputError("--ranks says " + std::to_string(options.ranks) +
-                         ", but mpirun has started " + std::to_string(mpi.ranks) + ".");
-    }
     ResultFile csv(isFirst ? options.csvFile : std::string());
     const Provenance provenance = gatherProvenance(console.commandLine);
     const SwarmScene scene(kind, options.objects, options.seed);
@@ -268,6 +264,10 @@ int runSwarmCommand(const SwarmOptions& options, const std::vector<std::string>&
         return runUnderMpirun(options, arguments, console);
     }
     MpiSession mpi;
+    if (options.ranks != 0 && options.ranks != static_cast<std::uint32_t>(mpi.ranks)) {
+        return refuse(console, "--ranks says " + std::to_string(options.ranks) +
+                                   ", but mpirun has started " + std::to_string(mpi.ranks) + ".");
+    }
     try {
         return runRank(options, kind, console, mpi);
     } catch (const RankError& error) {

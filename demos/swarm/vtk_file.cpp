@@ -104,7 +104,8 @@ template <std::size_t kCopies>
 std::vector<DataArray> fieldArrays(std::span<const VtkField> fields, std::size_t count) {
     std::vector<DataArray> arrays;
     for (const VtkField& field : fields) {
-        const auto add = [&arrays, &field, count]<class Number>(std::span<const Number> numbers) {
+        const auto add = [&arrays, &field, count](auto numbers) {
+            using Number = typename decltype(numbers)::value_type;
             if (numbers.size() != count) {
                 throw std::invalid_argument("The field '" + std::string(field.name) + "' has " +
                                             std::to_string(numbers.size()) +

@@ -27,6 +27,7 @@
 // Misuse     pack() and finish() in another order, changes between them, and ids that are stale or, where only
 //            objects may be, ghosts: asserted, and do nothing.
 
+#include <broadphase/aabb.hpp>
 #include <broadphase/core/byte_stream.hpp>
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/diagnostics.hpp>

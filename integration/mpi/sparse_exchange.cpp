@@ -21,9 +21,9 @@ void SparseExchange::start(std::span<const Parcel> parcels) {
     Buffers& buffers = *buffers_;
     buffers = {};
     for (const Parcel& parcel : parcels) {
-        for (std::size_t at = 0; at < parcel.bytes.size(); at += longestMessage) {
+        for (std::size_t at = 0; at < parcel.bytes.size(); at += longestMessage_) {
             const auto piece =
-                parcel.bytes.subspan(at, std::min(longestMessage, parcel.bytes.size() - at));
+                parcel.bytes.subspan(at, std::min(longestMessage_, parcel.bytes.size() - at));
             buffers.sent.push_back({parcel.rank, {piece.begin(), piece.end()}});
         }
     }

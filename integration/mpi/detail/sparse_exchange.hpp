@@ -44,7 +44,7 @@ public:
     [[nodiscard]] std::span<const Parcel> received() const noexcept { return parcels_; }
 
     /// Longer parcels are sent in pieces, since MPI counts bytes by an int. Valid: 1 to 2^30.
-    static void setLongestMessage(std::size_t bytes) noexcept { longestMessage = bytes; }
+    static void setLongestMessage(std::size_t bytes) noexcept { longestMessage_ = bytes; }
 
 private:
     struct Message {
@@ -66,7 +66,7 @@ private:
         return Ranks::kFirstTag + static_cast<int>(number_ & 1);
     }
 
-    static inline std::size_t longestMessage = std::size_t{1} << 30;
+    static inline std::size_t longestMessage_ = std::size_t{1} << 30;
 
     Ranks& ranks_;
     std::uint64_t number_ =
