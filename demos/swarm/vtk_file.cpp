@@ -222,9 +222,10 @@ void writeVtkPieces(const std::string& path, VtkPieceKind kind,
     const std::string section = kind == VtkPieceKind::points ? "PPointData" : "PCellData";
     std::string xml = opening("PPolyData") + "<PPolyData GhostLevel=\"0\">\n<" + section + ">\n";
     for (const VtkField& field : fields) {
-        const std::string_view type =
-            std::visit([]<class Number>(std::span<const Number>) { return typeName<Number>(); },
-                       field.numbers);
+        const auto nameOf = [](auto numbers) {
+            return typeName<typename decltype(numbers)::value_type>();
+        };
+        const std::string_view type = std::visit(nameOf, field.numbers);
         xml += "<PDataArray" + attribute("type", type) + attribute("Name", field.name) + "/>\n";
     }
     xml += "</" + section + ">\n<PPoints>\n<PDataArray" + attribute("type", typeName<float>()) +
