@@ -167,11 +167,6 @@ bool LevelLayout<Scalar>::isTimeToChoose(std::size_t count) {
 }
 
 template <class Scalar>
-void LevelLayout<Scalar>::chooseAgain() noexcept {
-    buildsSinceChosen_ = kBuildsBetweenCensuses;
-}
-
-template <class Scalar>
 void LevelLayout<Scalar>::choose(std::span<const PaddedBox<Scalar>> boxes,
                                  const LevelSizes& fixed) {
     countWhenChosen_ = boxes.size();
