@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/distributed/contributions.hpp>
 
-// A parcel: kMagic and the bytes that follow, then for each contribution the object's id, the number of its bytes,
+#include <integration/distributed/detail/parcels.hpp>
+
+// A parcel has the head of detail/parcels.hpp, then for each contribution the object's id, the number of its bytes,
 // and these.
 
 #include <broadphase/diagnostics.hpp>
@@ -13,12 +15,7 @@ namespace hashphase {
 namespace {
 
 constexpr std::uint32_t kContributionMagic = 0x68706331;  // "hpc1"
-constexpr std::size_t kBytesAt = 4;
 constexpr std::size_t kMostBytes = 65'536;
-
-[[noreturn]] void raiseBadContribution(const Parcel& parcel, const std::string& fault) {
-    throw RankError("What rank " + std::to_string(parcel.rank) + " has sent " + fault);
-}
 
 }  // namespace
 
@@ -43,8 +40,7 @@ std::span<const Parcel> Contributions::pack(const RankGrid<Scalar>& grid,
         detail::ByteWriter& writer = writers_[home];
         if (writer.bytes().empty()) {
             destinations_.push_back(home);
-            writer.write(kContributionMagic);
-            writer.write(std::uint64_t{0});  // at kBytesAt, when it is known
+            detail::beginParcel(writer, kContributionMagic);
         }
         writer.write(grid.globalId(one.proxy).value);
         writer.write(static_cast<std::uint32_t>(one.bytes.size()));
@@ -52,7 +48,7 @@ std::span<const Parcel> Contributions::pack(const RankGrid<Scalar>& grid,
     }
     std::sort(destinations_.begin(), destinations_.end());
     for (const std::uint32_t rank : destinations_) {
-        writers_[rank].rewrite(kBytesAt, std::uint64_t{writers_[rank].bytes().size()});
+        detail::sealParcel(writers_[rank]);
         parcels_.push_back({rank, writers_[rank].bytes()});
     }
     return parcels_;
@@ -66,27 +62,18 @@ std::span<const Contribution> Contributions::finish(const RankGrid<Scalar>& grid
               [](const Parcel& a, const Parcel& b) { return a.rank < b.rank; });
     received_.clear();
     for (const Parcel& parcel : sorted) {
-        detail::ByteReader reader(parcel.bytes);
-        const auto magic = reader.read<std::uint32_t>();
-        const auto size = reader.read<std::uint64_t>();
-        if (reader.isTorn() || magic != kContributionMagic) {
-            raiseBadContribution(parcel, "is no contribution of this version.");
-        }
-        if (size != parcel.bytes.size()) {
-            raiseBadContribution(parcel, "says that it has " + std::to_string(size) +
-                                             " bytes, and has " +
-                                             std::to_string(parcel.bytes.size()) + ".");
-        }
+        detail::ByteReader reader =
+            detail::openParcel(parcel, kContributionMagic, "are no contributions of this version.");
         while (reader.left() > 0) {
             const GlobalId object{reader.read<std::uint64_t>()};
             const auto count = reader.read<std::uint32_t>();
             if (reader.isTorn() || count > reader.left()) {
-                raiseBadContribution(parcel, "ends within a contribution.");
+                detail::raiseBadParcel(parcel, "ends within a contribution.");
             }
             const ProxyId proxy = grid.find(object);
             if (!grid.isOwned(proxy)) {
-                raiseBadContribution(parcel, "is for the object " + std::to_string(object.value) +
-                                                 ", which does not live here.");
+                detail::raiseBadParcel(parcel, "is for the object " + std::to_string(object.value) +
+                                                   ", which does not live here.");
             }
             received_.push_back({proxy, reader.rest().first(count), parcel.rank});
             reader.skip(count);

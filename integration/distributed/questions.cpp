@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/distributed/questions.hpp>
 
-// A parcel of questions: kMagic and the bytes that follow, then for each its number, shape, `most`, and the shape's
+#include <integration/distributed/detail/parcels.hpp>
+
+// A parcel of questions has the head of detail/parcels.hpp, then for each its number, shape, `most`, and the shape's
 // numbers. A parcel of answers: the same head, then for each the question's number, how many are found, and these.
 
 #include <broadphase/collectors.hpp>
@@ -16,28 +18,8 @@ namespace {
 
 constexpr std::uint32_t kQuestionMagic = 0x68707131;  // "hpq1"
 constexpr std::uint32_t kAnswerMagic = 0x68706131;    // "hpa1"
-constexpr std::size_t kSizeBehindMagic = 4;
 [[maybe_unused]] constexpr const char* kAskedWhen =
     "All ranks ask and answer after an update, before the next change.";
-
-[[noreturn]] void raiseBadQuestions(const Parcel& parcel, const std::string& fault) {
-    throw RankError("What rank " + std::to_string(parcel.rank) + " has sent " + fault);
-}
-
-/// Opens a parcel whose head must be right.
-detail::ByteReader openParcel(const Parcel& parcel, std::uint32_t magic, const char* name) {
-    detail::ByteReader reader(parcel.bytes);
-    const auto written = reader.read<std::uint32_t>();
-    const auto size = reader.read<std::uint64_t>();
-    if (reader.isTorn() || written != magic) {
-        raiseBadQuestions(parcel, std::string("are no ") + name + " of this version.");
-    }
-    if (size != parcel.bytes.size()) {
-        raiseBadQuestions(parcel, "says that it has " + std::to_string(size) + " bytes, and has " +
-                                      std::to_string(parcel.bytes.size()) + ".");
-    }
-    return reader;
-}
 
 template <class Scalar>
 void writePoint(detail::ByteWriter& writer, const Vector3<Scalar>& point) {
@@ -170,13 +152,13 @@ void forEachRankAsked(const Partition<Scalar>& partition, const Question<Scalar>
 }  // namespace
 
 template <class Scalar>
-detail::ByteWriter& RankQuestions<Scalar>::writerFor(std::uint32_t rank, std::uint32_t rankCount) {
+detail::ByteWriter& RankQuestions<Scalar>::writerFor(std::uint32_t rank, std::uint32_t rankCount,
+                                                     std::uint32_t magic) {
     writers_.resize(std::max<std::size_t>(writers_.size(), rankCount));
     detail::ByteWriter& writer = writers_[rank];
     if (writer.bytes().empty()) {
         destinations_.push_back(rank);
-        writer.write(std::uint32_t{0});
-        writer.write(std::uint64_t{0});
+        detail::beginParcel(writer, magic);
     }
     return writer;
 }
@@ -202,7 +184,7 @@ std::span<const Parcel> RankQuestions<Scalar>::pack(const RankGrid<Scalar>& grid
         mosts_.push_back(questions[i].most);
         forEachRankAsked(partition, questions[i], [&](std::uint32_t rank) {
             if (rank != grid.rank()) {
-                detail::ByteWriter& writer = writerFor(rank, partition.rankCount());
+                detail::ByteWriter& writer = writerFor(rank, partition.rankCount(), kQuestionMagic);
                 writer.write(i);
                 writeQuestion(writer, questions[i]);
                 return;
@@ -213,15 +195,14 @@ std::span<const Parcel> RankQuestions<Scalar>::pack(const RankGrid<Scalar>& grid
             }
         });
     }
-    return sealParcels(kQuestionMagic);
+    return sealParcels();
 }
 
 template <class Scalar>
-std::span<const Parcel> RankQuestions<Scalar>::sealParcels(std::uint32_t magic) {
+std::span<const Parcel> RankQuestions<Scalar>::sealParcels() {
     parcels_.clear();
     for (const std::uint32_t rank : destinations_) {
-        writers_[rank].rewrite(0, magic);
-        writers_[rank].rewrite(kSizeBehindMagic, std::uint64_t{writers_[rank].bytes().size()});
+        detail::sealParcel(writers_[rank]);
         parcels_.push_back({rank, writers_[rank].bytes()});
     }
     return parcels_;
@@ -233,16 +214,19 @@ std::span<const Parcel> RankQuestions<Scalar>::answer(const RankGrid<Scalar>& gr
     HASHPHASE_ASSERT(grid.isUpToDate(), kAskedWhen);
     clearWriters();
     for (const Parcel& parcel : received) {
-        detail::ByteReader reader = openParcel(parcel, kQuestionMagic, "questions");
+        detail::ByteReader reader =
+            detail::openParcel(parcel, kQuestionMagic, "are no questions of this version.");
         if (parcel.rank >= grid.partition().rankCount()) {
-            raiseBadQuestions(parcel, "are questions of a rank that there is not.");
+            detail::raiseBadParcel(parcel, "are questions of a rank that there is not.");
         }
-        detail::ByteWriter& writer = writerFor(parcel.rank, grid.partition().rankCount());
+        detail::ByteWriter& writer =
+            writerFor(parcel.rank, grid.partition().rankCount(), kAnswerMagic);
         while (reader.left() > 0) {
             const auto number = reader.read<std::uint32_t>();
             const auto question = readQuestion<Scalar>(reader);
             if (reader.isTorn() || question.shape > Question<Scalar>::Shape::ray) {
-                raiseBadQuestions(parcel, "ends within a question, or asks what there is not.");
+                detail::raiseBadParcel(parcel,
+                                       "ends within a question, or asks what there is not.");
             }
             findObjects(grid, question, answer_);
             writer.write(number);
@@ -254,19 +238,21 @@ std::span<const Parcel> RankQuestions<Scalar>::answer(const RankGrid<Scalar>& gr
             }
         }
     }
-    return sealParcels(kAnswerMagic);
+    return sealParcels();
 }
 
 template <class Scalar>
 Answers<Scalar> RankQuestions<Scalar>::finish(std::span<const Parcel> received) {
     for (const Parcel& parcel : received) {
-        detail::ByteReader reader = openParcel(parcel, kAnswerMagic, "answers");
+        detail::ByteReader reader =
+            detail::openParcel(parcel, kAnswerMagic, "are no answers of this version.");
         while (reader.left() > 0) {
             const auto number = reader.read<std::uint32_t>();
             const auto count = reader.read<std::uint32_t>();
             constexpr std::size_t kFoundBytes = sizeof(Scalar) + 8 + 4;
             if (reader.isTorn() || count > reader.left() / kFoundBytes || number >= mosts_.size()) {
-                raiseBadQuestions(parcel, "ends within an answer, or answers what was not asked.");
+                detail::raiseBadParcel(parcel,
+                                       "ends within an answer, or answers what was not asked.");
             }
             for (std::uint32_t i = 0; i < count; ++i) {
                 FoundObject<Scalar> found;

@@ -116,9 +116,9 @@ private:
         friend constexpr auto operator<=>(const Numbered&, const Numbered&) = default;
     };
 
-    detail::ByteWriter& writerFor(std::uint32_t rank, std::uint32_t rankCount);
+    detail::ByteWriter& writerFor(std::uint32_t rank, std::uint32_t rankCount, std::uint32_t magic);
     void clearWriters();
-    std::span<const Parcel> sealParcels(std::uint32_t magic);
+    std::span<const Parcel> sealParcels();
 
     std::vector<detail::ByteWriter> writers_;  // by rank
     std::vector<std::uint32_t> destinations_;

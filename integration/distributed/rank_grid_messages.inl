@@ -3,7 +3,7 @@
 
 // What ranks tell each other: pack(), and the reading of parcels in finish().
 //
-// A parcel is a head (kMagic, its bytes, the frame, the number of entries), and entries. An entry:
+// A parcel has the head of detail/parcels.hpp, the frame, the number of entries, and these. An entry:
 //   kind      1 byte, of the bits below
 //   id        8 bytes
 //   box       now; not where the object was removed
@@ -12,6 +12,7 @@
 //   box       before, for a new ghost of what is not new itself
 //   payload   for a new ghost, and where it has changed
 
+#include <integration/distributed/detail/parcels.hpp>
 #include <integration/distributed/rank_grid.hpp>
 
 #include <broadphase/diagnostics.hpp>
@@ -22,8 +23,7 @@ namespace hashphase {
 namespace {
 
 constexpr std::uint32_t kMagic = 0x68706d31;  // "hpm1"
-constexpr std::size_t kSizeAt = 4;
-constexpr std::size_t kCountAt = 20;
+constexpr std::size_t kCountAt = 20;          // behind the head and the frame
 
 // How many objects ahead memory is fetched.
 constexpr std::size_t kAhead = 8;
@@ -56,10 +56,6 @@ Aabb<Scalar> readBox(detail::ByteReader& reader) {
     return box;
 }
 
-[[noreturn]] void raiseBadParcel(const Parcel& parcel, const std::string& fault) {
-    throw RankError("What rank " + std::to_string(parcel.rank) + " has sent " + fault);
-}
-
 }  // namespace
 
 // --- Telling -------------------------------------------------------------------------------------
@@ -90,7 +86,7 @@ std::span<const Parcel> RankGrid<Scalar>::pack() {
     cost_ = {};
     for (const std::uint32_t rank : destinations_) {
         detail::ByteWriter& writer = writers_[rank];
-        writer.rewrite(kSizeAt, std::uint64_t{writer.bytes().size()});
+        detail::sealParcel(writer);
         writer.rewrite(kCountAt, entryCounts_[rank]);
         parcels_.push_back({rank, writer.bytes()});
         cost_.entriesSent += entryCounts_[rank];
@@ -154,8 +150,7 @@ void RankGrid<Scalar>::addEntry(std::uint32_t rank, std::uint32_t index, unsigne
     detail::ByteWriter& writer = writers_[rank];
     if (entryCounts_[rank]++ == 0) {
         destinations_.push_back(rank);
-        writer.write(kMagic);
-        writer.write(std::uint64_t{0});  // at kSizeAt, when it is known
+        detail::beginParcel(writer, kMagic);
         writer.write(frame_);
         writer.write(std::uint32_t{0});  // at kCountAt
     }
@@ -227,44 +222,41 @@ auto RankGrid<Scalar>::readEntry(detail::ByteReader& reader) const -> Entry {
 
 template <class Scalar>
 void RankGrid<Scalar>::readParcel(const Parcel& parcel) {
-    detail::ByteReader reader(parcel.bytes);
-    const auto magic = reader.read<std::uint32_t>();
-    const auto size = reader.read<std::uint64_t>();
+    detail::ByteReader reader =
+        detail::openParcel(parcel, kMagic, "is no parcel of a RankGrid of this version.");
     const auto frame = reader.read<std::uint64_t>();
     const auto count = reader.read<std::uint32_t>();
-    if (reader.isTorn() || magic != kMagic || parcel.rank >= partition_.rankCount()) {
-        raiseBadParcel(parcel, "is no parcel of a RankGrid of this version.");
-    }
-    if (size != parcel.bytes.size()) {
-        raiseBadParcel(parcel, "says that it has " + std::to_string(size) + " bytes, and has " +
-                                   std::to_string(parcel.bytes.size()) + ".");
+    if (reader.isTorn() || parcel.rank >= partition_.rankCount()) {
+        detail::raiseBadParcel(parcel, "has no frame, or is of a rank that there is not.");
     }
     if (frame != frame_) {
-        raiseBadParcel(parcel, "is of frame " + std::to_string(frame) + "; this is frame " +
-                                   std::to_string(frame_) + ".");
+        detail::raiseBadParcel(parcel, "is of frame " + std::to_string(frame) + "; this is frame " +
+                                           std::to_string(frame_) + ".");
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const Entry entry = readEntry(reader);
         const bool hasPayload = (entry.kind & kEntryPayload) != 0;
         if (reader.isTorn() || (hasPayload && entry.payload.size() != config_.payloadBytes)) {
-            raiseBadParcel(parcel, "ends within its entry " + std::to_string(i + 1) + " of " +
-                                       std::to_string(count) + ".");
+            detail::raiseBadParcel(parcel, "ends within its entry " + std::to_string(i + 1) +
+                                               " of " + std::to_string(count) + ".");
         }
         if (!isKind(entry.kind) || (hasPayload && config_.payloadBytes == 0)) {
-            raiseBadParcel(parcel, "has an entry of the kind " + std::to_string(entry.kind) +
-                                       ", which there is not.");
+            detail::raiseBadParcel(
+                parcel,
+                "has an entry of the kind " + std::to_string(entry.kind) + ", which there is not.");
         }
         const bool leavesForHere = entry.home == rank_ && (entry.kind & kEntryHome) != 0 &&
                                    (entry.kind & (kEntryLeaves | kEntryRemoved)) != 0;
         if (entry.home >= partition_.rankCount() || leavesForHere) {
-            raiseBadParcel(parcel, "moves an object to rank " + std::to_string(entry.home) +
-                                       " of " + std::to_string(partition_.rankCount()) + ".");
+            detail::raiseBadParcel(parcel, "moves an object to rank " + std::to_string(entry.home) +
+                                               " of " + std::to_string(partition_.rankCount()) +
+                                               ".");
         }
         entries_.emplace_back(parcel, entry);
     }
     if (reader.left() > 0) {
-        raiseBadParcel(parcel, "goes on for " + std::to_string(reader.left()) +
-                                   " bytes behind its last entry.");
+        detail::raiseBadParcel(parcel, "goes on for " + std::to_string(reader.left()) +
+                                           " bytes behind its last entry.");
     }
 }
 
@@ -309,8 +301,8 @@ void RankGrid<Scalar>::takeEntry(const Parcel& parcel, const Entry& entry) {
     const ProxyId id = find(entry.object);
     if (id.isNull() || (marks_[id.index] & (kOwned | kTouched)) != 0 ||
         homes_[id.index] != parcel.rank) {
-        raiseBadParcel(parcel, "changes the object " + std::to_string(entry.object.value) +
-                                   ", which is no ghost from there.");
+        detail::raiseBadParcel(parcel, "changes the object " + std::to_string(entry.object.value) +
+                                           ", which is no ghost from there.");
     }
     const bool isRemoved = (entry.kind & kEntryRemoved) != 0;
     keepBefore(id.index);

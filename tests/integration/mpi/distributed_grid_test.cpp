@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/mpi/distributed_grid.hpp>
 #include <tests/integration/distributed/rank_scenes.hpp>
+#include <tests/integration/mpi/ranks_here.hpp>
 
 #include <gtest/gtest.h>
 
@@ -14,18 +15,6 @@
 
 namespace hashphase::test {
 namespace {
-
-int rankHere() {
-    int rank = 0;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    return rank;
-}
-
-int rankCount() {
-    int count = 1;
-    MPI_Comm_size(MPI_COMM_WORLD, &count);
-    return count;
-}
 
 /// All that the ranks have, on every rank, sorted.
 std::vector<GlobalPair> joined(const std::vector<GlobalPair>& mine) {

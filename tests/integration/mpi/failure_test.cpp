@@ -4,6 +4,7 @@
 // them, in time.
 
 #include <integration/mpi/distributed_grid.hpp>
+#include <tests/integration/mpi/ranks_here.hpp>
 
 #include <gtest/gtest.h>
 
@@ -16,12 +17,6 @@
 
 namespace hashphase::test {
 namespace {
-
-int rankHere() {
-    int rank = 0;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    return rank;
-}
 
 const Aabb<float> kBox(Vector3<float>(0, 0, 0), Vector3<float>(1, 1, 1));
 
