@@ -204,8 +204,8 @@ public:
         return !isPacked_ && !isPartitionNew_ && pairs_.isUpToDate();
     }
 
-    /// Calls visit(const ProxyPair&) for each pair that this rank owns now, sorted by ProxyIds of this rank. One of the
-    /// two, or both, may be ghosts. Nothing has changed since finish() (asserted). Cost: Pairs::collect().
+    /// Calls visit(const ProxyPair&) for each pair that this rank owns now, sorted by ProxyIds of this rank. One of
+    /// the two, or both, may be ghosts. Nothing has changed since finish() (asserted). Cost: Pairs::collect().
     template <class Visit>
     void forEachPair(const Visit& visit) const {
         std::vector<ProxyPair> pairs;
@@ -224,8 +224,8 @@ public:
     /// What the last frame cost.
     [[nodiscard]] const RankCost& lastCost() const noexcept { return cost_; }
 
-    /// Returns the min corners of up to `count` objects that live here, for Partition::balanced(). The weights estimate
-    /// the work of each; together they are `load`, by default lastCost().load.
+    /// Returns the min corners of up to `count` objects that live here, for Partition::balanced(). The weights
+    /// estimate the work of each; together they are `load`, by default lastCost().load.
     /// Cost: `count` box queries.
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count) const;
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count,

@@ -14,15 +14,15 @@
 //            which objects have moved between ranks: send along what of them is not in the payload.
 // Balance    The parts of space follow the work: when the slowest rank has a set share more of it than the mean,
 //            update() cuts space again.
-// Together   The constructor, update() or begin() and end(), ask(), sendHome(), pairSum() and the destructor are called
-//            by all ranks in the same order. All else is local.
+// Together   The constructor, update() or begin() and end(), ask(), sendHome(), pairSum() and the destructor are
+//            called by all ranks in the same order. All else is local.
 // Failure    RankError on all ranks, with a sentence that says which rank has given up, and why: it was left by an
 //            exception; ranks have other configurations; another rank has not answered for
 //            DistributedConfig::patience, as it hangs or makes other calls; a message is not what it says. The grid
 //            is of no more use then, and every further call of all ranks together throws that sentence; MPI_Abort()
 //            ends the program. The MPI library ends the program by itself where a process dies.
-// Misuse     begin(), end(), ask(), sendHome() and pairSum() in another order: RankError on all ranks. Destroy the grid
-//            before MPI_Finalize(), and not between begin() and end().
+// Misuse     begin(), end(), ask(), sendHome() and pairSum() in another order: RankError on all ranks. Destroy the
+//            grid before MPI_Finalize(), and not between begin() and end().
 // Threads    Everything from the thread that may call MPI (MPI_THREAD_FUNNELED). Queries of here().grid() may run on
 //            several threads.
 // Machines   all of one kind: numbers travel as they lie in memory
@@ -111,8 +111,8 @@ public:
     /// end(), the program does other work: it may ask here(), and changes no boxes and no payloads. Throws RankError.
     void begin();
 
-    /// Takes what other ranks have sent, and returns what has changed. Valid until the next begin(). Throws RankError.
-    /// Cost: RankGrid::finish(), a message to each rank concerned, and a barrier.
+    /// Takes what other ranks have sent, and returns what has changed. Valid until the next begin(). Throws
+    /// RankError. Cost: RankGrid::finish(), a message to each rank concerned, and a barrier.
     RankChanges end(ParallelFor parallelFor = serialFor);
 
     /// From the next frame on this rank's load is `load` (not negative, asserted; in any unit), such as the
@@ -125,8 +125,8 @@ public:
 
     // --- The whole -------------------------------------------------------------------------------
 
-    /// The way back: sends bytes about ghosts, such as forces, to the ranks where their objects live, and returns what
-    /// others have sent for objects of this rank, sorted by the rank that has sent. By all ranks together, after
+    /// The way back: sends bytes about ghosts, such as forces, to the ranks where their objects live, and returns
+    /// what others have sent for objects of this rank, sorted by the rank that has sent. By all ranks together, after
     /// update() and before objects move. Valid until the next call of this or of ask() or begin(). Throws RankError.
     /// Cost: a message to each rank concerned, and a barrier.
     std::span<const Contribution> sendHome(std::span<const Contribution> forGhosts);
