@@ -33,8 +33,8 @@ public:
     /// Throws RankError where a call has not returned MPI_SUCCESS.
     void check(int code, const char* call);
 
-    /// Waits for a request of which MPI reads and writes `buffer`. `doing` says in an error what was waited for. Where
-    /// it throws, the buffer is kept: MPI may still use it.
+    /// Waits for a request of which MPI reads and writes `buffer`. `doing` says in an error what was waited for.
+    /// Where it throws, the buffer is kept: MPI may still use it.
     void wait(MPI_Request request, const std::shared_ptr<void>& buffer, const char* doing);
     /// Tests a request once.
     [[nodiscard]] bool isDone(MPI_Request& request);
