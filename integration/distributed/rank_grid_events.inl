@@ -52,10 +52,10 @@ bool RankGrid<Scalar>::isBornHere(const ProxyPair& pair) const noexcept {
     }
     const unsigned first = marks_[pair.first.index];
     const unsigned second = marks_[pair.second.index];
-    if (((first | second) & kNew) == 0 || ((first | second) & kBorn) != 0) {
+    if (((first | second) & kNew) == 0) {
         return true;
     }
-    // One is new here and was elsewhere: what lay wholly in this region did not touch it there.
+    // One is new here. What lay wholly in this region did not touch it elsewhere; what was nowhere has NaN.
     constexpr unsigned kMayHaveTouched = kNew | kShared;
     return (first & kMayHaveTouched) == 0 || (second & kMayHaveTouched) == 0 ||
            !overlaps(boxBefore(pair.first), boxBefore(pair.second));

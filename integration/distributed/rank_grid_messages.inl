@@ -16,6 +16,7 @@
 #include <integration/distributed/rank_grid.hpp>
 
 #include <broadphase/diagnostics.hpp>
+#include <broadphase/geometry/padded_box.hpp>
 
 #include <algorithm>
 
@@ -210,7 +211,8 @@ auto RankGrid<Scalar>::readEntry(detail::ByteReader& reader) const -> Entry {
     if ((entry.kind & kEntryNew) != 0) {
         entry.groups.group = reader.read<std::uint32_t>();
         entry.groups.mask = reader.read<std::uint32_t>();
-        entry.before = (entry.kind & kEntryBorn) != 0 ? Box() : readBox<Scalar>(reader);
+        entry.before =
+            (entry.kind & kEntryBorn) != 0 ? detail::nanBox<Scalar>() : readBox<Scalar>(reader);
     }
     if ((entry.kind & kEntryPayload) != 0) {
         entry.payload =
