@@ -63,10 +63,6 @@ double slowest(const std::vector<RankFrame>& ranks) {
     return std::ranges::max(ranks, {}, &RankFrame::whole).whole;
 }
 
-std::string timesText(double times) {
-    return ratioText(times);
-}
-
 void printBalance(const SwarmResult& result, std::ostream& out) {
     const auto cuts = std::ranges::count(result.wasRebalanced, true);
     double worst = 1;
@@ -155,7 +151,7 @@ void printSwarm(const SwarmResult& result, const std::optional<SingleResult>& al
         const double single =
             median(begin, alone->whole.size(), [&](std::size_t i) { return alone->whole[i]; });
         out << ", " << milliseconds(single)
-            << " in one process without MPI: " << timesText(single / together);
+            << " in one process without MPI: " << ratioText(single / together);
     }
     out << ".\n";
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/swarm/swarm_scene.hpp>
 
+#include <integration/distributed/global_id.hpp>
+
 #include <array>
 #include <cmath>
 
@@ -23,13 +25,7 @@ constexpr float kFramesAround = 200;  // until a sphere is where it was
 constexpr float kTravelFrames = 300;  // in which a traveller crosses the cube
 constexpr std::uint64_t kPlanes = 3;
 
-// Of SplitMix64: any number of bits from a number and a seed.
-std::uint64_t mixed(std::uint64_t x) {
-    x += 0x9e3779b97f4a7c15U;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
-    return x ^ (x >> 31);
-}
+using detail::mixedBits;
 
 // Takes 21 bits, 0 <= result < 1.
 float unit(std::uint64_t bits, int from) {
@@ -54,7 +50,7 @@ std::span<const SwarmKindName> swarmKinds() {
 SwarmScene::SwarmScene(SwarmKind kind, std::uint64_t count, std::uint64_t seed)
     : kind_(kind),
       count_(count),
-      seed_(mixed(seed)),
+      seed_(mixedBits(seed)),
       side_(kSpacing * std::cbrt(static_cast<float>(count))) {}
 
 // Homes of a ball are as dense as those of the cube.
@@ -64,7 +60,7 @@ Vector3<float> SwarmScene::home(std::uint64_t number, std::uint64_t bits) const 
         case SwarmKind::clusters: {
             const std::uint64_t cluster = number % 10;
             if (cluster < 8) {
-                const Vector3<float> corner = pointOf(mixed(seed_ + cluster));
+                const Vector3<float> corner = pointOf(mixedBits(seed_ + cluster));
                 const float size = 0.16F * side_ * (0.4F + 0.15F * static_cast<float>(cluster));
                 return 0.75F * side_ * corner + size * point;
             }
@@ -90,8 +86,8 @@ Aabb<float> SwarmScene::box(std::uint64_t number, std::uint32_t frame) const {
         plane.max()[axis] = side_ / 2 + kRadius;
         return plane;
     }
-    const std::uint64_t bits = mixed(seed_ ^ mixed(number));
-    const std::uint64_t more = mixed(bits);
+    const std::uint64_t bits = mixedBits(seed_ ^ mixedBits(number));
+    const std::uint64_t more = mixedBits(bits);
     Vector3<float> center = home(number, bits);
     const float turns = static_cast<float>(frame) / kFramesAround;
     for (int axis = 0; axis < 3; ++axis) {
@@ -103,8 +99,8 @@ Aabb<float> SwarmScene::box(std::uint64_t number, std::uint32_t frame) const {
     }
     float radius = kRadius;
     if (kind_ == SwarmKind::sizes) {
-        // Each order of magnitude as often as the number of those that fit: r^-3 would be a fractal's; r^-2 here.
-        const float chance = unit(mixed(more), 0);
+        // Of a radius of r or more there are as many as 1 / r.
+        const float chance = unit(mixedBits(more), 0);
         radius = 1e-3F / (1e-4F + (1 - 1e-4F) * chance);
     }
     return {center - Vector3<float>::Constant(radius), center + Vector3<float>::Constant(radius)};

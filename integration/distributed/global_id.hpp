@@ -33,6 +33,19 @@ struct GlobalPair {
     return a < b ? GlobalPair{a, b} : GlobalPair{b, a};
 }
 
+namespace detail {
+
+/// As many bits, all of which depend on all. SplitMix64, after G. Steele, D. Lea and C. Flood, "Fast splittable
+/// pseudorandom number generators", 2014.
+[[nodiscard]] constexpr std::uint64_t mixedBits(std::uint64_t x) noexcept {
+    x += 0x9e3779b97f4a7c15U;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
+    return x ^ (x >> 31);
+}
+
+}  // namespace detail
+
 /// The pairs of one rank, or of all, as two numbers that do not depend on the order of the pairs: two sets of
 /// pairs that differ have, but for one chance in 2^64, different sums. Sums of ranks are added by +=.
 struct PairSum {
@@ -42,7 +55,7 @@ struct PairSum {
     /// Adds one pair. Cost: O(1).
     constexpr void add(const GlobalPair& pair) noexcept {
         ++count;
-        hash += mixed(mixed(pair.first.value) + pair.second.value);
+        hash += detail::mixedBits(detail::mixedBits(pair.first.value) + pair.second.value);
     }
     constexpr PairSum& operator+=(const PairSum& other) noexcept {
         count += other.count;
@@ -50,15 +63,6 @@ struct PairSum {
         return *this;
     }
     friend constexpr bool operator==(const PairSum&, const PairSum&) = default;
-
-private:
-    // SplitMix64, after G. Steele, D. Lea and C. Flood, "Fast splittable pseudorandom number generators", 2014.
-    [[nodiscard]] static constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
-        x += 0x9e3779b97f4a7c15U;
-        x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
-        x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
-        return x ^ (x >> 31);
-    }
 };
 
 }  // namespace hashphase
