@@ -60,15 +60,14 @@ struct NamedSetting {
 template <class Scalar>
 std::array<NamedSetting, 11> settingsOf(const DistributedConfig& config,
                                         const Partition<Scalar>* partition, std::uint32_t ranks) {
-    // Sums of numbers small enough to be exact; -1 for none.
+    // -1 for none.
     double cutHash = -1;
     double partitionRanks = ranks;
     if (partition != nullptr) {
         std::uint64_t hash = 0;
         for (const Cut<Scalar>& cut : partition->cuts()) {
-            hash = (hash ^ std::bit_cast<std::uint64_t>(static_cast<double>(cut.at)) ^ cut.axis) *
-                   0x9e3779b97f4a7c15U;
-            hash ^= hash >> 32;
+            hash = detail::mixedBits(
+                hash ^ std::bit_cast<std::uint64_t>(static_cast<double>(cut.at)) ^ cut.axis);
         }
         cutHash = static_cast<double>(hash >> 16);
         partitionRanks = partition->rankCount();
@@ -190,6 +189,13 @@ void DistributedGrid<Scalar>::checkUse(bool isBegun) {
         ranks_.fail(isBegun ? "It has called end() without begin()."
                             : "It has called begin(), ask(), sendHome() or pairSum() between "
                               "begin() and end().");
+    }
+}
+
+template <class Scalar>
+void DistributedGrid<Scalar>::checkUpToDate() {
+    if (!here_->isUpToDate()) {
+        ranks_.fail("It has called ask() or pairSum() after a change, before update().");
     }
 }
 
@@ -381,6 +387,7 @@ void DistributedGrid<Scalar>::rebalance() {
 template <class Scalar>
 Answers<Scalar> DistributedGrid<Scalar>::ask(std::span<const Question<Scalar>> questions) {
     return together(false, [&] {
+        checkUpToDate();
         exchange_.start(questions_.pack(*here_, questions));
         exchange_.finish("for the questions of all ranks");
         exchange_.start(questions_.answer(*here_, exchange_.received()));
@@ -402,6 +409,7 @@ std::span<const Contribution> DistributedGrid<Scalar>::sendHome(
 template <class Scalar>
 PairSum DistributedGrid<Scalar>::pairSum() {
     return together(false, [&] {
+        checkUpToDate();
         const PairSum mine = here_->pairSum();
         const auto numbers = std::make_shared<std::array<std::uint64_t, 2>>();
         *numbers = {mine.count, mine.hash};

@@ -21,8 +21,8 @@
 //            DistributedConfig::patience, as it hangs or makes other calls; a message is not what it says. The grid
 //            is of no more use then, and every further call of all ranks together throws that sentence; MPI_Abort()
 //            ends the program. The MPI library ends the program by itself where a process dies.
-// Misuse     begin(), end(), ask(), sendHome() and pairSum() in another order: RankError on all ranks. Destroy the
-//            grid before MPI_Finalize(), and not between begin() and end().
+// Misuse     begin(), end(), ask(), sendHome() and pairSum() in another order, and ask() or pairSum() after a change:
+//            RankError on all ranks. Destroy the grid before MPI_Finalize(), and not between begin() and end().
 // Threads    Everything from the thread that may call MPI (MPI_THREAD_FUNNELED). Queries of here().grid() may run on
 //            several threads.
 // Machines   all of one kind: numbers travel as they lie in memory
@@ -155,6 +155,7 @@ private:
     void startLoads();
     void waitForLoads();
     void checkUse(bool isBegun);
+    void checkUpToDate();
     [[nodiscard]] double errorOfCuts() const noexcept;
     template <class Work>
     auto together(bool isBegun, const Work& work);

@@ -155,6 +155,20 @@ TEST(MpiFailure, CallsInAnotherOrderAreNamedOnAll) {
     EXPECT_TRUE(contains(text, "Rank 1 of 3 gave up. It has called begin()")) << text;
 }
 
+TEST(MpiFailure, QuestionsAfterAChangeAreNamedOnAll) {
+    DistributedGrid<float> grid(MPI_COMM_WORLD, patient(60));
+    grid.update();
+    if (rankHere() == 2) {
+        grid.add(GlobalId{1}, kBox);
+    }
+    const std::string text = complaint([&] {
+        grid.pairSum();
+        grid.update();
+    });
+    EXPECT_TRUE(contains(text, "Rank 2 of 3 gave up. It has called ask() or pairSum() after"))
+        << text;
+}
+
 TEST(MpiFailure, WorkBetweenBeginAndEndMayTakeLongerThanPatience) {
     DistributedGrid<float> grid(MPI_COMM_WORLD, patient(2));
     grid.update();
