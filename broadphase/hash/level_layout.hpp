@@ -45,9 +45,6 @@ public:
     /// and now and then. To be asked once a build, which it counts.
     [[nodiscard]] bool isTimeToChoose(std::size_t count);
 
-    /// Makes the next build choose the cell sizes again.
-    void chooseAgain() noexcept { countWhenChosen_ = 0; }
-
     /// Chooses the cell sizes, or takes the fixed ones where there are any. Cost: a pass over the boxes.
     void choose(std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed);
 

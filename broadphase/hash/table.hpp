@@ -106,12 +106,6 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
     /// The most entries that share a bucket of cells.
     [[nodiscard]] std::uint32_t largestCell() const noexcept { return largestBucket_; }
-    /// Makes the next build choose the cell sizes again, where others are filed now.
-    void chooseAgain() noexcept {
-        if (layout_ != nullptr) {
-            layout_->chooseAgain();
-        }
-    }
     /// Edge of the finest cells [m]; infinity when nothing is filed by cells.
     [[nodiscard]] double finestCellSize() const noexcept {
         return !proxyIndices_.empty() && layout_->sizes().count > 0

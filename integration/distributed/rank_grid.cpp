@@ -247,9 +247,6 @@ RankChanges RankGrid<Scalar>::finish(std::span<const Parcel> received, ParallelF
     for (const RemovedProxy& removed : removedHere_) {
         grid_.remove(removed.id);
     }
-    if (isPartitionNew_) {
-        grid_.store().tables.mobile.chooseAgain();  // the objects here are others now
-    }
     reportPairs(pairs_.update(acceptAllPairs, parallelFor));
     endFrame();
     return {{born_, died_}, arrived_, departed_};
