@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Axis-aligned bounding boxes and the one predicate that decides every pair.
+// Axis-aligned bounding boxes, and the one predicate that decides every pair.
 //
 //     const Aabb<float> crate = boxAround<float>({0, 1, 0}, {0.5F, 1, 0.5F});
 //     if (overlaps(crate, boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}))) { ... }
 //
-// Units   metres, or whatever the caller's world is measured in.
-// Closed  Boxes contain their faces: boxes that touch overlap, as in Bullet.
-// NaN     A box with a NaN coordinate overlaps nothing.
-// Cost    O(1), without an allocation, for everything here
-// Threads values and pure functions; use them from any thread
+// Units    metres, or any other unit of length used throughout
+// Closed   Boxes contain their faces: boxes that touch overlap, as in Bullet.
+// NaN      A box with a NaN coordinate overlaps nothing.
+// Cost     O(1), no allocation
+// Threads  values and pure functions; use them from any thread
 
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/export.hpp>
@@ -28,25 +28,25 @@
 
 namespace hashphase {
 
-/// A point, or a displacement: three coordinates x, y, z [m].
+/// A point or a displacement: x, y, z [m].
 template <class Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 
-/// The box from min() to max(), both inclusive. A box may be infinite. It may be inverted (min > max): then
-/// the predicates below still mean exactly what they say. A box made by Aabb<Scalar>() is inverted.
+/// The box from min() to max(), both inclusive. It may be infinite or inverted (min > max), as Aabb<Scalar>() is; the
+/// predicates below keep their exact meaning.
 template <class Scalar>
 using Aabb = Eigen::AlignedBox<Scalar, 3>;
 
-/// Returns the box from `min` to `max` [m]: boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}). The corners are
-/// taken as they are: where min > max, the box is inverted.
+/// Returns the box from `min` to `max` [m], for example boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}). It is inverted
+/// where min > max.
 template <class Scalar>
 [[nodiscard]] inline Aabb<Scalar> boxBetween(const Vector3<Scalar>& min,
                                              const Vector3<std::type_identity_t<Scalar>>& max) {
     return {min, max};
 }
 
-/// Returns the box that reaches `halfExtents` [m] to either side of `center` [m], by a rounding error more
-/// or less. Negative half extents make an inverted box.
+/// Returns the box that reaches `halfExtents` [m] to either side of `center` [m], within rounding. Negative half
+/// extents make an inverted box.
 template <class Scalar>
 [[nodiscard]] inline Aabb<Scalar> boxAround(
     const Vector3<Scalar>& center, const Vector3<std::type_identity_t<Scalar>>& halfExtents) {
@@ -69,9 +69,8 @@ template <class Scalar>
            detail::areUnordered(low[2], high[2]);
 }
 
-/// True when the closed boxes a and b share a point: a.min <= b.max and b.min <= a.max on every
-/// axis. False when any of the twelve numbers is NaN. Written without branches: where the test matters, no
-/// branch can be predicted.
+/// True when the closed boxes a and b share a point: a.min <= b.max and b.min <= a.max on every axis. False when any
+/// of the twelve numbers is NaN.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool overlaps(const Aabb<Scalar>& a,
                                                             const Aabb<Scalar>& b) noexcept {
@@ -86,15 +85,14 @@ template <class Scalar>
             (bMin[1] <= aMax[1]) & (aMin[2] <= bMax[2]) & (bMin[2] <= aMax[2])) != 0;
 }
 
-/// True when the numbers are equal to the bit: -0 differs from 0, and a NaN equals itself.
+/// True when the numbers have the same bits: -0 differs from 0, and a NaN equals itself.
 template <std::floating_point Scalar>
 [[nodiscard]] inline bool isSameBits(Scalar a, Scalar b) noexcept {
     using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
     return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
-/// True when all twelve numbers are. Reads them one by one, as they mostly have just been written: of wider
-/// reads the processor would wait until they are in memory.
+/// True when both boxes have the same bits. One by one: wider reads would wait for recent writes.
 template <class Scalar>
 [[nodiscard]] inline bool isSameBits(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
     const Scalar* aMin = a.min().data();
@@ -108,7 +106,7 @@ template <class Scalar>
 
 namespace detail {
 
-/// allFinite() and hasNaN() of Eigen's, with -ffast-math as well.
+/// Eigen's allFinite() and hasNaN(), correct with -ffast-math too.
 template <class Scalar>
 [[nodiscard]] inline bool areFinite(const Vector3<Scalar>& point) noexcept {
     return isFinite(point[0]) && isFinite(point[1]) && isFinite(point[2]);

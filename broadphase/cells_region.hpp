@@ -11,25 +11,23 @@
 
 namespace hashphase {
 
-/// Every proxy whose box touches a cell that a ball's box touches: an estimate of which proxies are in the
-/// ball, without computing a distance. Key: 0.
+/// Every proxy whose box touches a cell that a ball's box touches: an estimate of the proxies in the ball, without
+/// distances. Key: 0.
 ///
 ///     CollectCount count;
 ///     grid.visit(CellsRegion<float>(center, 20, grid.cellSize()), count);
 ///
-/// Finds every proxy that PositionRegion(center, radius) and SphereRegion(center, radius) find. Beyond these
-/// it finds only boxes that come nearer than radius + cellSize on each axis, but for rounding: no box that is
-/// farther away than sqrt(3) * (radius + cellSize).
+/// Finds every proxy that PositionRegion and SphereRegion find. Other proxies are, within rounding, nearer than
+/// radius + cellSize on each axis: at most sqrt(3) * (radius + cellSize) away.
 ///
-/// After Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing",
-/// 2005, "AI proximity decisions". The loop there leaves out the last cells, and all cells where the ball is
-/// smaller than a cell.
+/// Source: Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005,
+/// "AI proximity decisions". (The loop there omits the last cells.)
 template <class Scalar>
 class CellsRegion {
 public:
-    /// The ball has its `center` and `radius` in [m]. Cells are cubes with corners at multiples of `cellSize`
-    /// [m]. With a cell size that is 0 or less, NaN or infinite, the ball's box is taken as it is. The region
-    /// is empty when the ball is: with a negative radius, a NaN, or a centre that is not finite.
+    /// The ball has `center` and `radius` [m]. Cells are cubes with corners at multiples of `cellSize` [m]. A cell
+    /// size of 0 or less, NaN or infinity means the ball's box itself. The region is empty for a negative or NaN
+    /// radius, or a centre that is not finite.
     CellsRegion(const Vector3<Scalar>& center, Scalar radius, Scalar cellSize)
         : bounds_(PositionRegion<Scalar>(center, radius).bounds()) {
         const bool hasCells = cellSize > 0 && detail::isFinite(cellSize);
@@ -38,13 +36,13 @@ public:
             Scalar& high = bounds_.max()[axis];
             const Scalar lowBorder = std::floor(low / cellSize) * cellSize;
             const Scalar highBorder = (std::floor(high / cellSize) + 1) * cellSize;
-            // Rounded outward; a NaN comes of numbers that are far too large for such cells.
+            // Rounded outward; numbers far too large for such cells give a NaN.
             low = lowBorder < low ? lowBorder : low;
             high = highBorder > high ? highBorder : high;
         }
     }
 
-    /// 0 where the box overlaps bounds(), else -1.
+    /// Returns 0 if the box overlaps bounds(), else -1.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         return overlaps(bounds_, box) ? Scalar(0) : Scalar(-1);
     }

@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Collectors say what a query keeps. A collector has two members:
+// Collectors decide what a query keeps. A collector has two members:
 //
-//   add(id, key)   takes a proxy that lies in the region; a query offers each proxy at most once
+//   add(id, key)   takes a proxy in the region; each proxy at most once
 //   limit()        returns the largest key still wanted; below zero the query ends
 //
 //     std::vector<ProxyId> found;
 //     CollectAll all(found);
 //     grid.visit(BoxRegion<float>{box}, all);  // the answer is in `found`
 //
-// Use      A collector lives on the caller's stack and serves one query on one thread. Pass a variable, not
-//          a temporary: the variable holds the answer after the query.
+// Use      Pass a variable, which holds the answer after the query. It serves one query on one thread.
 // Keys     The region defines them (regions.hpp): 0, a squared distance [m^2], or a fraction of a way.
-// Own      Any class with these two members is a collector. add() gets keys of the grid's Scalar, limit()
-//          may return float or double. A collector that changes the grid may be offered a proxy again: see
-//          Callbacks in grid.hpp.
-// Filters  CollectIf (proxy_filter.hpp) leaves out proxies before another collector sees them.
+// Own      Any class with these members is a collector. add() gets keys of the grid's Scalar; limit() may return
+//          float or double. See Callbacks in grid.hpp for collectors that change the grid.
+// Filters  CollectIf (proxy_filter.hpp) removes proxies before another collector sees them.
 
 #include <broadphase/proxy_id.hpp>
 
@@ -31,8 +29,8 @@
 
 namespace hashphase {
 
-/// Appends every proxy found to the caller's vector, which keeps what it held and must outlive the
-/// collector. The order follows the grid's memory; sort where order matters.
+/// Appends every proxy found to the caller's vector, which must outlive the collector. The order follows the grid's
+/// memory; sort if it matters.
 class CollectAll {
 public:
     explicit CollectAll(std::vector<ProxyId>& found) noexcept : found_(&found) {}
@@ -49,7 +47,7 @@ private:
     std::vector<ProxyId>* found_;
 };
 
-/// Counts the proxies found. Serves several queries, too: it goes on counting.
+/// Counts the proxies found, over one or more queries.
 class CollectCount {
 public:
     template <class Scalar>
@@ -66,8 +64,8 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Ends the query at the first proxy found. Answers "is there any?" at the least cost; which one is found
-/// follows the grid's memory, not distance. For the nearest one take CollectClosest.
+/// Ends the query at the first proxy found: "is there any?" at the least cost. Which one depends on the grid's
+/// memory; CollectClosest finds the nearest.
 class CollectAny {
 public:
     template <class Scalar>
@@ -85,9 +83,8 @@ private:
     ProxyId found_;
 };
 
-/// Keeps the proxy with the smallest key; of equal keys, the smallest id. Shrinks the search: the query
-/// leaves out what is farther away than the closest proxy so far. With a SphereRegion it finds the nearest
-/// box, with a RayRegion the first box that the ray enters:
+/// Keeps the proxy with the smallest key; of equal keys, the smallest id. The search shrinks with each find. A
+/// SphereRegion gives the nearest box, a RayRegion the first box on the ray:
 ///
 ///     CollectClosest<float> first;
 ///     grid.visit(RayRegion<float>(from, to), first);  // first.key(): the fraction of the way
@@ -104,7 +101,7 @@ public:
     [[nodiscard]] Scalar limit() const noexcept { return key_; }
     /// The closest proxy; null when none was found.
     [[nodiscard]] ProxyId found() const noexcept { return found_; }
-    /// The key of found(), in the region's measure; infinity when none was found.
+    /// The key of found() (see the region); infinity when none was found.
     [[nodiscard]] Scalar key() const noexcept { return key_; }
 
 private:
@@ -112,17 +109,17 @@ private:
     Scalar key_ = std::numeric_limits<Scalar>::infinity();
 };
 
-/// A proxy and its key in the region where it was found. Ordered by key, then by id.
+/// A proxy and its key in the region. Ordered by key, then by id.
 template <class Scalar>
 struct KeyedProxy {
-    Scalar key = 0;  ///< in the region's measure
+    Scalar key = 0;  ///< defined by the region
     ProxyId id;
 
     friend constexpr auto operator<=>(const KeyedProxy&, const KeyedProxy&) = default;
 };
 
-/// Keeps the `count` proxies with the smallest keys; of equal keys, those with the smallest ids. Shrinks the
-/// search to proxies that may still displace one of them. Cost: O(log count) for each proxy kept.
+/// Keeps the `count` proxies with the smallest keys; of equal keys, the smallest ids. The search shrinks with each
+/// find. Cost: O(log count) for each proxy kept.
 ///
 ///     std::vector<KeyedProxy<float>> nearest;
 ///     CollectNearest<float> five(5, nearest);
@@ -131,8 +128,7 @@ struct KeyedProxy {
 template <class Scalar>
 class CollectNearest {
 public:
-    /// Keeps them in `nearest`, which is emptied here and must outlive the collector. With a count of 0
-    /// nothing is kept.
+    /// Keeps them in `nearest`, which is emptied here and must outlive the collector.
     CollectNearest(std::size_t count, std::vector<KeyedProxy<Scalar>>& nearest)
         : count_(count), nearest_(&nearest) {
         nearest_->clear();
@@ -150,7 +146,7 @@ public:
         nearest_->push_back(found);
         std::push_heap(nearest_->begin(), nearest_->end());
     }
-    /// Infinity until `count` proxies are kept, then the largest key among them.
+    /// Infinity until `count` proxies are kept, then their largest key.
     [[nodiscard]] Scalar limit() const noexcept {
         if (nearest_->size() < count_) {
             return std::numeric_limits<Scalar>::infinity();
@@ -158,8 +154,8 @@ public:
         return count_ == 0 ? Scalar(-1) : nearest_->front().key;
     }
 
-    /// Sorts the vector, nearest first, and returns it. Call it once, after the query: until then the
-    /// vector is a heap. Fewer than `count` proxies when the region has fewer. Cost: O(count log count).
+    /// Sorts the vector, nearest first, and returns it. Call it once, after the query: until then the vector is a
+    /// heap. Cost: O(count log count).
     std::span<const KeyedProxy<Scalar>> sort() {
         std::sort_heap(nearest_->begin(), nearest_->end());
         return *nearest_;
@@ -170,12 +166,12 @@ private:
     std::vector<KeyedProxy<Scalar>>* nearest_;  // a heap, the farthest on top
 };
 
-/// Sets a bit for every proxy found: bit i % 64 of word i / 64 stands for the ProxyId::index i. The cheapest
-/// list of many proxies. Grid::idAt() leads from an index back to the id.
+/// Sets a bit for every proxy found: bit i % 64 of word i / 64 for ProxyId::index i. The cheapest list of many
+/// proxies. Grid::idAt() returns the id of an index.
 class CollectBits {
 public:
-    /// Sets bits in the caller's vector, which grows as needed. Bits already set stay set, so that several
-    /// queries can be united. Only the collector may resize the vector while it is in use.
+    /// Sets bits in the caller's vector, which grows as needed, and keeps bits already set. Nothing else may resize
+    /// it meanwhile.
     explicit CollectBits(std::vector<std::uint64_t>& bits) noexcept
         : bits_(&bits), words_(bits.data()), wordCount_(bits.size()) {}
 
@@ -200,8 +196,8 @@ private:
 };
 
 namespace detail {
-/// True when the key is that of a box in the region (0 or more) and no larger than the collector's limit.
-/// The limit may be of the other precision.
+/// True when the key is 0 or more (in the region) and at most the collector's limit, which may have another
+/// precision.
 template <class Scalar, class Collector>
 [[nodiscard]] bool isWanted(Scalar key, const Collector& collector) {
     const auto limit = collector.limit();

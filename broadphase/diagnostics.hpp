@@ -1,26 +1,24 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Where hashphase speaks up: messages about bad data, and assertions about misuse.
+// Diagnostics: messages about bad data, and assertions about misuse.
 //
-// Threads   The handlers may be called from any thread that uses the library. Replace them before
-//           other threads start.
-// Errors    A message handler does not throw. An assertion handler may throw, to get away from misuse.
-// Messages  Bad data from outside (a NaN box) is set aside, where it does no harm, and told once, in a
-//           sentence; the default handler writes it to stderr.
-// Misuse    A broken precondition is an assertion. The default handler writes the sentence with its place to
-//           stderr and aborts. Assertions are compiled in when HASHPHASE_ENABLE_ASSERTS is 1: in every build
-//           type but Release and MinSizeRel, unless CMake's HASHPHASE_ASSERTS says otherwise.
+// Threads   Any thread may call the handlers. Replace them before other threads start.
+// Errors    A message handler must not throw. An assertion handler may throw, to escape from misuse.
+// Messages  Bad data, such as a box with a NaN, is set aside and reported once, in a sentence. By default, on stderr.
+// Misuse    A broken precondition is asserted. The default handler writes the sentence and source line to stderr, and
+//           aborts. Assertions exist if HASHPHASE_ENABLE_ASSERTS is 1: in all build types except Release and
+//           MinSizeRel, unless CMake's HASHPHASE_ASSERTS is ON or OFF.
 
 #include <broadphase/export.hpp>
 
 namespace hashphase {
 
-/// Receives one message, a full sentence without a trailing newline.
+/// Receives one message: a full sentence without a trailing newline.
 using MessageHandler = void (*)(const char* message);
 
-/// Receives a broken precondition: the condition's text, a sentence saying what would be right, and
-/// the place in the source. Returning continues the program at the caller's risk.
+/// Receives a broken precondition: its text, a sentence that states what is right, and the source line. If the
+/// handler returns, the program continues at the caller's risk.
 using AssertHandler = void (*)(const char* condition, const char* sentence, const char* file,
                                int line);
 

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Macros for shared libraries: they mark what a library offers; all else is hidden. Each library has a header
-// like this, with a macro of its own, because DLLs import functions of others and export their own.
-// HASHPHASE_SHARED is 1 where the libraries are shared ones; CMake and pkg-config set it for their users.
-// hashphase_<component>_EXPORTS is set where that library itself is compiled.
+// Macros that mark what a shared library exports; everything else is hidden. Each library has a header like this one,
+// with its own macros. CMake and pkg-config set HASHPHASE_SHARED to 1 for shared libraries.
+// hashphase_<component>_EXPORTS is set while that library is compiled.
 //
-// HASHPHASE_<COMPONENT>_TEMPLATE_EXPORT  the same of a class template that a library instantiates for all, and
-//                              HASHPHASE_INSTANCE_EXPORT where it does: MSVC takes a class template that
-//                              is exported for one that each source instantiates
-// HASHPHASE_ONE_FOR_ALL        before a thread_local variable in a header that all libraries of a program share
-// HASHPHASE_SHARES_VARIABLES   1 where they can. DLLs call a function of the one that has it.
-// HASHPHASE_ASK_LINKER_FOR(x)  asks for the variable hashphase::x, a const char of the grid's library, where
-//                              the compiler leaves out what nothing uses: it does not link without
+// HASHPHASE_<COMPONENT>_EXPORT           on an exported function or class
+// HASHPHASE_<COMPONENT>_TEMPLATE_EXPORT  on a class template that a library instantiates; HASHPHASE_INSTANCE_EXPORT
+//                                        on the instantiation, for MSVC
+// HASHPHASE_ONE_FOR_ALL                  on a thread_local variable in a header that all libraries of a program share
+// HASHPHASE_SHARES_VARIABLES             1 if they can share it; with DLLs, 0: a function of the owner returns it
+// HASHPHASE_ASK_LINKER_FOR(x)            makes linking fail without the variable hashphase::x, a const char of the
+//                                        grid's library, even if the compiler drops unused references
 
-// Every public header includes this one before any code that older standards reject.
+// Every public header includes this one first, before code that older standards reject.
 #if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L
 #error "hashphase needs C++20: -std=c++20, /std:c++20, or target_compile_features(... cxx_std_20)."
 #endif
 
-// Macros that are not set are 0, so that every #if asks about a defined macro.
+// Unset macros become 0, so that every #if tests a defined macro.
 #ifndef HASHPHASE_SHARED
 #define HASHPHASE_SHARED 0
 #endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A reference to a function, as parameters of this library take it: cheaper than std::function, which owns
-// a copy.
+// A reference to a function, for parameters: cheaper than std::function, which owns a copy.
 //
 //     void visitAll(FunctionRef<void(ProxyId)> visit);
 //     visitAll([&](ProxyId id) { ... });                     // right: the lambda lives until the call ends
@@ -20,13 +19,12 @@ namespace hashphase {
 template <class Signature>
 class FunctionRef;
 
-/// A reference to anything callable: a lambda, a function, a function object. For parameters only: it must
-/// outlive neither the call to which it is passed nor the callable. To keep a lambda, keep it as
-/// `const auto`. Size: two pointers. Allocates nothing. Never empty.
+/// A reference to a lambda, a function or a function object. For parameters only: it must not outlive the callable.
+/// Keep a lambda itself, as `const auto`. Two pointers; never allocates; never empty.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
 public:
-    /// Refers to `callable`, which takes these arguments and returns a Result or what converts to it.
+    /// Refers to `callable`, which takes these arguments and returns a Result, or a value that converts to it.
     template <class Callable>
         requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
@@ -37,8 +35,8 @@ public:
               return called(std::forward<Arguments>(arguments)...);
           }) {}
 
-    /// To call adapter(callable, arguments...), of a type that has no members, such as a lambda that captures
-    /// nothing.
+    /// Refers to adapter(callable, arguments...). The adapter's type has no members, for example a lambda without
+    /// captures.
     template <class Callable, class Adapter>
         requires(std::is_empty_v<Adapter>&&
                      std::is_invocable_r_v<Result, Adapter, Callable&, Arguments...>)
@@ -60,8 +58,8 @@ public:
         }
     }
 
-    /// Calls the callable, as a non-const one unless it is const itself. Passes on its exceptions. On several
-    /// threads at the same time if the callable allows that. Cost: a call through a pointer.
+    /// Calls the callable, as non-const unless it is const itself. Passes on its exceptions. Threads: as the callable
+    /// allows. Cost: a call through a pointer.
     Result operator()(Arguments... arguments) const {
         return invoke_(object_, std::forward<Arguments>(arguments)...);
     }

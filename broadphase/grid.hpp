@@ -1,35 +1,23 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The grid: knows every proxy's box, files it in a spatial hash, and answers where things are.
+// The grid: files the boxes of up to 2^28 proxies in a spatial hash, and answers queries about where they are.
 //
-// A frame    move() whatever moved (or everything: an unchanged box costs a comparison), then
-//            update() once, or Pairs::update(), which does it for you.
-// Reads      Every change is visible to queries at once, without a call in between. Queries read the list of
-//            changes beside the tables. When this has cost a third of what filing does, a query files all
-//            changes: changes and queries in turn cost about the least possible. Grids that are never
-//            updated, as in editors and servers, hold no more than the proxies of now and of the last update.
-// Threads    Queries are const and may run on any number of threads at the same time, and from
-//            within a collector. Everything else needs the grid for itself.
-// Units      metres, or any other unit of length used throughout.
-// Bad data   A box with a NaN is kept, found by nothing, counted by nanCount(), and reported once
-//            through the message handler. Infinite, huge and inverted boxes are answered exactly as
-//            overlaps() says.
-// Denormals  Boxes are compared as the thread's processor compares numbers. A thread that takes denormal
-//            numbers (nearer to 0 than 1.2e-38, or 2.2e-308) for 0 finds that more such boxes touch. Where
-//            coordinates are denormal, all threads must agree on that; elsewhere the answers are the same.
-// Limits     2^28 proxies. Throws std::length_error beyond.
-// Callbacks  A collector may ask the grid, and change it, in a query of its own. A proxy that it removes is
-//            not offered any more; a proxy that it moves or adds may be offered again, by its new box, or
-//            not. After a change, no other thread asks until the query is over. Within visitEach(), queries
-//            of convex volumes and a PairFilter the grid must not change; update() and shiftOrigin() must not
-//            run within any query. Asserted.
-// Memory     Where it runs out, std::bad_alloc comes from add(), reserve(), shiftOrigin(), update() and
-//            queries that file or grow; nothing is lost, and the call may be repeated. move() and remove()
-//            allocate nothing. Many queries between changes and updates need a second table of the mobile
-//            proxies.
-// Misuse     An id that is null or stale is asserted, and does nothing; its box is NaN. An id of another
-//            grid is, too, unless this grid has a proxy with the same index and generation.
+// A frame    Move the proxies that changed, then call update() once, or Pairs::update() if there are Pairs.
+// Queries    see every change at once. Queries read a list of changes; when that has cost a third of filing, one
+//            files them all. A grid that is never updated stays correct, with bounded memory.
+// Threads    Queries are const: run any number at once, also in collectors. Other calls need exclusive access.
+// Units      metres, or any other unit of length used throughout
+// Bad data   A box with a NaN is kept but never found; nanCount() counts it, and the message handler reports the
+//            first one. Infinite, huge and inverted boxes follow overlaps() exactly.
+// Denormals  Flushing denormals (below 1.2e-38, or 2.2e-308) to 0 makes more boxes touch; all threads must agree.
+// Callbacks  A collector may query the grid, and in visit() change it; then no other thread queries until visit()
+//            ends. Removed proxies are not offered again; moved or added ones may be. Asserted: no change within
+//            visitEach(), ConvexRegion queries or a PairFilter; no update() or shiftOrigin() within any query.
+// Memory     Calls that allocate throw std::bad_alloc, lose nothing, and may be repeated. remove() and move() on one
+//            thread never allocate. Queries that file need a second table of the mobile proxies.
+// Misuse     Asserted: ids are valid. With a null or stale id a call does nothing; its box is NaN. An id of another
+//            grid is stale here, unless its index and generation match a proxy.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
@@ -56,7 +44,7 @@
 
 namespace hashphase {
 
-/// Cells lowest to highest, inclusive, in units of Grid::cellSize().
+/// A range of cells, both ends inclusive, in units of Grid::cellSize().
 struct CellRange {
     std::array<std::int64_t, 3> lowest{};
     std::array<std::int64_t, 3> highest{};
@@ -65,38 +53,36 @@ struct CellRange {
 };
 
 namespace detail {
-/// Cells are numbered as far as this on either side.
+/// Cell numbers end here, on either side of 0.
 inline constexpr std::int64_t kLastCell = 9'000'000'000'000'000'000;
 }  // namespace detail
 
-/// Knows every proxy's box, and answers where things are. Scalar is float or double.
+/// The grid. Scalar is float or double.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Grid {
 public:
     using Box = Aabb<Scalar>;
     using Point = Vector3<Scalar>;
 
-    /// Throws std::invalid_argument with configError(config) when the configuration is bad.
+    /// Throws std::invalid_argument with configError(config) for an invalid configuration.
     explicit Grid(const GridConfig& config = {});
-    /// Destroy the Pairs and Sweeps of the grid first (asserted).
+    /// Asserted: the grid's Pairs and Sweeps are already destroyed.
     ~Grid();
     Grid(const Grid&) = delete;
     Grid& operator=(const Grid&) = delete;
 
     // --- Proxies ---------------------------------------------------------------------------------
 
-    /// Adds a proxy. The hint `mobility` saves work for proxies that will not move; for `groups` see
-    /// setGroups(). Throws std::length_error, and adds nothing, beyond 2^28 proxies. Cost: O(1) amortised.
+    /// Adds a proxy. `mobility` is a hint; for `groups` see setGroups(). Throws std::length_error beyond 2^28
+    /// proxies. Cost: O(1) amortised.
     [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile,
                               const ProxyGroups& groups = {});
 
-    /// Makes room for `count` proxies altogether. Up to that number, add() neither moves memory nor fails for
-    /// want of it, until releaseUnusedMemory() gives the room back. Throws std::length_error beyond 2^28.
-    /// Cost: O(count) where there is not room already.
+    /// Makes room for `count` proxies in total, which add() then adds without allocating, until
+    /// releaseUnusedMemory(). Throws std::length_error beyond 2^28. Cost: O(count) if the room grows.
     void reserve(std::size_t count);
 
-    /// Sets the proxy's box. A box that is equal to the present one, bit by bit, costs a comparison and marks
-    /// nothing. Cost: O(1) amortised.
+    /// Sets the proxy's box. A box with the same bits as before costs one comparison. Cost: O(1) amortised.
     [[HASHPHASE_ALWAYS_INLINE]] void move(ProxyId id, const Box& box) {
         HASHPHASE_ASSERT(contains(id),
                          "Only a proxy of this grid that was not removed can be moved.");
@@ -106,173 +92,160 @@ public:
         }
     }
 
-    /// Sets the box of each proxy, in their order; both spans have the same length (asserted). All is as
-    /// after as many single calls, on any number of threads, where a proxy is named twice, too. Where memory
-    /// runs out in the second one, some boxes are set and others are not: the call may be repeated. Cost: as
-    /// move() for each proxy; on several threads 4 bytes a proxy, and where one is named twice the call goes on
-    /// on one thread.
+    /// Sets boxes[i] for ids[i], in order. The result equals single calls, on any number of threads, even if a proxy
+    /// is named twice. With `parallelFor`, may throw std::bad_alloc after some moves; repeat the call.
+    /// Asserted: both spans have the same length.
+    /// Cost: as move() for each proxy. `parallelFor` takes about 10 bytes of scratch per proxy, and runs on one
+    /// thread if a proxy is named twice.
     void move(std::span<const ProxyId> ids, std::span<const Box> boxes);
     void move(std::span<const ProxyId> ids, std::span<const Box> boxes, ParallelFor parallelFor);
 
-    /// Says which proxies the proxy may pair with, for Pairs; queries find it as before. Pairs neither tests
-    /// nor remembers two proxies that may not pair, and does not ask its filter about them: the cost follows
-    /// the pairs that may be, even where hundreds share a cell. Groups count from the next Pairs::update()
-    /// on, for which the proxy counts as changed. New pairs begin there; a present pair lasts until its boxes
-    /// part, or until Pairs::refilter(). Where memory runs out, nothing has changed.
-    /// Cost: O(1); the first call for other groups than ProxyGroups{}, O(proxies).
+    /// Sets which proxies the proxy may pair with in Pairs; queries ignore groups. Pairs that groups refuse are
+    /// neither tested nor filtered nor remembered, even if hundreds share a cell. With Pairs, the proxy counts as
+    /// changed: new pairs begin at the next Pairs::update(). Existing pairs last until their boxes separate, or until
+    /// Pairs::refilter(). Throws std::bad_alloc, and changes nothing.
+    /// Cost: O(1); O(proxies) for the first groups other than ProxyGroups{}.
     void setGroups(ProxyId id, const ProxyGroups& groups);
 
-    /// The groups last set.
+    /// Returns the groups last set.
     [[nodiscard]] ProxyGroups groups(ProxyId id) const;
 
-    /// Removes the proxy; its id is never valid again. Cost: O(1).
+    /// Removes the proxy; its id never becomes valid again. Cost: O(1).
     void remove(ProxyId id);
 
-    /// Removes every proxy and forgets all that came before: the next calls have the same results, in the
-    /// same order and at the same cost, as with a new grid, indices of ids included. Old ids stay invalid.
-    /// Frees all memory but 64 bytes an index (128 in double precision). Not for a grid with Pairs, which
-    /// Pairs::clear() clears, nor within a query: asserted, and does nothing.
-    /// Cost: O(indexLimit()).
+    /// Removes all proxies. Later calls give the same results, order, cost and indices as a new grid; old ids stay
+    /// invalid. Keeps only records (64 bytes per index, 128 in double precision) and room for lists.
+    /// Cost: O(indexLimit()). Asserted, else does nothing: no Pairs (use Pairs::clear()), and not within a query.
     void clear();
 
-    /// Moves the origin of all coordinates to `shift` [m]: subtracts it from every box. Queries see it at
-    /// once. Returns how many boxes were rounded.
-    /// Boxes that were not rounded, or are so large that the shift is lost in them, keep their rest and their
-    /// pairs. Boxes that were rounded count as moved: some may come to touch, but none that overlap can part.
-    /// (A shift by multiples of a power of two rounds least: 1024 m, say, towards where things are.)
-    /// Sweeps over this grid are shifted with it. Shift all else that has coordinates yourself: regions,
-    /// zones, terrains. A shift that is not finite is asserted, and does nothing. Where memory runs out,
-    /// nothing has changed.
-    /// Cost: up to three passes over all boxes; when cells had to change, an update(), or the next one's.
+    /// Moves the origin to `shift` [m]: subtracts it from every box, and from the grid's Sweeps. Shift your own
+    /// regions, zones and terrains yourself. Returns how many boxes were rounded (not those so large that the shift
+    /// vanishes in rounding). Rounded boxes count as moved: some may begin to touch, none that overlap separate. The
+    /// others stay at rest and keep their pairs. Multiples of a power of two, such as 1024 m, round least.
+    /// Throws std::bad_alloc, and changes nothing.
+    /// Asserted: the shift is finite, else does nothing.
+    /// Cost: up to three passes over all boxes; if cells change, also as an update(), perhaps within the next.
     std::size_t shiftOrigin(const Point& shift);
 
-    /// Whether the id names a proxy of this grid that was not removed.
+    /// True when the id names a proxy of this grid that was not removed.
     [[nodiscard]] bool contains(ProxyId id) const noexcept { return store_.proxies.contains(id); }
 
-    /// The box last set, exactly.
+    /// Returns the box last set, exactly.
     [[nodiscard]] const Box& box(ProxyId id) const;
 
-    /// Number of proxies alive, those with a NaN box included.
+    /// Number of proxies, including those with a NaN box.
     [[nodiscard]] std::size_t size() const noexcept { return store_.proxies.size; }
 
-    /// The length of an array by ProxyId::index: the indices of all proxies, present and past, are below it.
-    /// Falls only where memory is given back: see releaseUnusedMemory().
+    /// Length for an array by ProxyId::index: all indices, present and past, are below it. Falls only by
+    /// releaseUnusedMemory(), an update() after a peak, or GridSnapshot::restore().
     [[nodiscard]] std::uint32_t indexLimit() const noexcept {
         return static_cast<std::uint32_t>(store_.proxies.records.size());
     }
 
-    /// The proxy alive that has this index; null when there is none. Leads from data kept by index, such as
-    /// the bits of CollectBits, back to the proxy. Cost: O(1).
+    /// Returns the proxy with this index, or null: the way back from data kept by index, such as CollectBits.
+    /// Cost: O(1).
     [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept {
         return index < indexLimit() && store_.proxies.isAlive(index) ? store_.proxies.idOf(index)
                                                                      : ProxyId{};
     }
 
-    /// A number that stands for the set of proxies: it differs after each add(), remove(), clear() and shift
-    /// of the origin, and from that of any other grid. Tells whether a kept query result is out of date.
+    /// Identifies the set of proxies: kept query results are out of date when it changes. Every add(), remove(),
+    /// clear(), shiftOrigin() and GridSnapshot::restore() changes it. No two grids share a number.
     [[nodiscard]] std::uint64_t populationNumber() const noexcept { return store_.proxies.number; }
 
-    /// Number of proxies whose box has a NaN now.
+    /// Number of proxies whose box has a NaN.
     [[nodiscard]] std::size_t nanCount() const noexcept { return store_.proxies.nanCount; }
 
-    /// Calls visit(ProxyId, const Box&) for every proxy alive, in the order of their indices; it may
-    /// change the grid. Cost: O(proxies); after a peak of eight times as many, O(n log n) and a list.
+    /// Calls visit(ProxyId, const Box&) for every proxy, by ascending index; visit() may change the grid.
+    /// Cost: O(proxies); O(n log n) and a list after a peak of eight times as many proxies.
     template <class Visit>
     void forEach(Visit&& visit) const;
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// The one query: offers to `collector` every proxy whose box has a key in `region`, each once.
-    /// See regions.hpp and collectors.hpp. Returns the cost as data.
-    /// Cost: the cells that the region touches. However large or long the region, at most about one test for
-    /// each proxy (up to 16 where so many rows of cells share a bucket), and one more for each proxy that has
-    /// changed since it was filed. A region that is empty by a NaN costs only these (one test for each proxy,
-    /// if the NaN is in a ray's fatness). Where hundreds share a cell, a region with bounds() tests only the
-    /// long ones and those close to it along an axis.
+    /// Offers to `collector`, once each, all proxies whose box has a key in `region` (regions.hpp, collectors.hpp).
+    /// Returns the cost as data.
+    /// Cost: the cells that the region touches, at most about one test per proxy (16 if many rows of cells share a
+    /// bucket), and one test per proxy that changed since it was filed. A region with a NaN costs only the latter (a
+    /// NaN in a ray's fatness: one test per proxy). If hundreds share a cell, regions with bounds() test only long
+    /// boxes, and those close along an axis.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
-    /// visit() for many regions: collectors[i] takes the proxies of regions[i], in any order. Both spans have
-    /// the same length (asserted). The collectors must not share data when `parallelFor` is parallel. Returns
-    /// the sum of the costs, each within the bounds of visit(). Faster than single calls where regions have
-    /// bounds(), unless the collectors stop early.
+    /// visit() for many regions: collectors[i] takes the proxies of regions[i], in any order. Collectors must not
+    /// share data if `parallelFor` is parallel. Returns the sum of the costs. Faster than single calls for regions
+    /// with bounds(), unless collectors stop early.
+    /// Asserted: both spans have the same length.
     template <class Region, class Collector>
     QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,
                         ParallelFor parallelFor = serialFor) const;
 
-    /// The edge of the cells of cellAt(), cellsOf() and visitCell() [m]: the fixed cell size, or the
-    /// finest of the automatic ones at the last update; 1 while the grid is empty.
+    /// The edge [m] of the cells below: the configured size; or the finest automatic size at the last update, 1
+    /// without an update or if the grid was empty.
     [[nodiscard]] Scalar cellSize() const noexcept { return store_.tables.cellSize; }
 
-    /// Files what has changed, if `count` queries would otherwise read more of the list of changes than
-    /// filing costs. visitEach() does it by itself. Call it before many single queries on several threads, so
-    /// that they cost the same in every run. Cost: O(1), or that of an update().
+    /// Files all changes, if that costs less than `count` queries that read their list. Call it before many single
+    /// queries on threads, for equal costs in every run; visitEach() does it itself. Cost: O(1), or as an update().
     void expectQueries(std::size_t count) const { store_.expectQueries(count); }
 
-    /// The same for rays: builds, too, what makes so many fast, if they may be worth it; those that come later
-    /// would. visitEach() does it by itself. Cost: O(1), or that of an update() and a sort of the proxies.
+    /// expectQueries() for rays: also builds the box trees that make rays fast, if `count` rays are worth it.
+    /// Cost: O(1), or as an update() and a sort of the proxies.
     void expectRays(std::size_t count) const { store_.expectRays(count); }
 
-    /// Cell query: which proxies are in the cell? Offers every proxy p with `cell` in cellsOf(p) to the
-    /// collector. Cost: O(1) buckets; at most that of visit().
+    /// Offers to the collector every proxy p with `cell` in cellsOf(p). Cost: O(1) buckets; at most as visit().
     template <class Collector>
     QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
 
-    /// The cell of a point [m]: floor(point / cellSize()) on each axis. The last cells, 9e18 from 0, hold all
-    /// that lies beyond. The point must be finite (asserted).
+    /// Returns the cell of a point [m]: floor(point / cellSize()) on each axis. The last cells, 9e18 from 0, hold
+    /// everything beyond. Asserted: the point is finite.
     [[nodiscard]] std::array<std::int64_t, 3> cellAt(const Point& point) const;
 
-    /// Object query: which cells does the proxy's box touch? Its box must be finite (asserted).
-    /// Cost: O(1).
+    /// Returns the cells that the proxy's box touches. Asserted: the box is finite. Cost: O(1).
     [[nodiscard]] CellRange cellsOf(ProxyId id) const;
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Ends a frame: files what changed, and puts to rest what has not changed for a while. Not for a grid
-    /// with Pairs, which Pairs::update() updates, nor within a query: asserted, and does nothing. The result
-    /// does not depend on `parallelFor`. Cost: a rebuild of the mobile proxies when one of them changed, unless
-    /// there are few; nothing otherwise; at worst O(n log n), to sort cells that very many proxies share.
+    /// Ends a frame: files the changes, and lets long unchanged proxies rest. Returns what it did, which does not
+    /// depend on `parallelFor`.
+    /// Asserted, else does nothing: no Pairs (use Pairs::update()), and not within a query.
+    /// Cost: nothing without changes; otherwise a rebuild of the mobile proxies, except of few; at worst O(n log n),
+    /// to sort cells that very many proxies share.
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
-    /// How often the mobile proxies have been filed: by updates that found a change, unless of few, and between
-    /// updates by queries that had read much of the list of changes.
+    /// How often updates and queries have filed the mobile proxies.
     [[nodiscard]] std::uint64_t filingCount() const noexcept { return store_.tables.filingCount; }
 
-    /// Bytes held, capacity included.
+    /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Bytes that only rays read, where there are so many of them that it pays; else 0. Part of memoryBytes().
+    /// Bytes of the box trees that only rays read, part of memoryBytes(); 0 until enough rays were cast.
     [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
 
-    /// Frees what only rays read; many rays build it again. Not within a query (asserted).
+    /// Frees the box trees for rays; many rays build them again. Asserted: not within a query.
     void releaseRayMemory() noexcept;
 
-    /// Gives back unused memory: room for more proxies than there are, and scratch, which the next update,
-    /// shift or query takes again. Ends what reserve() has asked for.
-    /// Indices at the end without a proxy go, too: indexLimit() falls, and their old ids stay invalid; from
-    /// then on new proxies take the lowest free index first. A proxy with a high index keeps a record (64
-    /// bytes, or 128 in double precision) for each index below.
-    /// An update does it by itself when there has been room for more than eight times as many proxies, or
-    /// eight times those reserved, in 256 updates in a row. Not within a query (asserted). Cost:
-    /// O(indexLimit()), and moving what is left.
+    /// Frees surplus room (also that of reserve()), scratch that later calls allocate again, and unused indices at
+    /// the end: indexLimit() falls, and old ids stay invalid. From then on new proxies take the lowest free index. A
+    /// proxy with a high index keeps the records of all indices below. update() does this itself after 256 updates in
+    /// a row with room for over eight times the proxies, or the reserved number.
+    /// Asserted: not within a query.
+    /// Cost: O(indexLimit()), and moving the rest.
     void releaseUnusedMemory() noexcept;
 
-    /// Says which invariant is broken, in a sentence; empty when all hold:
-    /// - Every proxy alive is filed in exactly one table, or waits in the list of changes, or is NaN.
-    /// - A filed proxy's entry has the proxy's box.
-    /// - The tables' own invariants (hash/table.hpp), and those of their trees (tree/box_tree.hpp).
+    /// Returns the broken invariant as a sentence; empty when all hold. They are in store/store.cpp, hash/table.hpp
+    /// and tree/box_tree.hpp.
     [[nodiscard]] std::string validate() const;
 
     // --- For the library's own parts -------------------------------------------------------------
 
-    /// What the grid is made of. It may change with any version.
+    /// The grid's parts. They may change with any version.
     [[nodiscard]] detail::Store<Scalar>& store() noexcept { return store_; }
     [[nodiscard]] const detail::Store<Scalar>& store() const noexcept { return store_; }
-    /// Whether the calling thread is within a query of this grid, or within its filter.
+    /// True while the calling thread is within a query of this grid, or within its filter.
     [[nodiscard]] bool isWithinQuery() const noexcept {
         return detail::QueryScope::isWithin(&store_);
     }
-    /// False while the calling thread is within a query that takes no changes: see Callbacks.
+    /// False while the calling thread is within a query that forbids changes: see Callbacks.
     [[nodiscard]] bool takesChanges() const noexcept {
         return !detail::QueryScope::forbidsChanges(&store_);
     }

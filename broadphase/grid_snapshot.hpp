@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A grid as it was at some time, with its pairs and sweeps, to go back to: for rollback, replays, training and
-// editors.
+// Saves and restores a grid with its pairs and sweeps: for rollback, replays, training and editors.
 //
 //     GridSnapshot<float> snapshot;
 //     snapshot.save(pairs);     // the grid, its pairs, and the sweeps that they follow
-//     ...                       // frames, proxies that come and go
-//     snapshot.restore(pairs);  // as if nothing had happened since
+//     ...                       // frames; proxies come and go
+//     snapshot.restore(pairs);  // back to the saved state
 //
-// What is the same   All: the next calls have the same results, in the same order and at the same cost, as they
-//           had after save(), indices and generations of new ids included. populationNumber() alone goes on, so
-//           that what clients keep by it is out of date.
-// Ids       of proxies added after save() are void after restore(): forget them. New proxies may get equal ones.
-// Memory    A snapshot has about as many bytes as the grid, and keeps them: to save again takes none where the
-//           grid has not grown. Where memory runs out in restore(), nothing has changed; in save(), the snapshot is
-//           empty.
+// Restored  Later calls give the same results, order, cost and new ids as after save(). Only populationNumber()
+//           changes.
+// Ids       Forget ids of proxies added after save(): new proxies may get equal ones.
+// Memory    about as many bytes as the grid, kept for the next save(). On std::bad_alloc, restore() changes nothing,
+//           and save() leaves the snapshot empty.
 // Threads   Needs the grid and this object for itself.
-// Misuse    restore() from an empty snapshot, into a grid with other settings, or without the pairs and sweeps that
-//           were saved with it; save() of a grid without its Pairs; and calls within a query are asserted, and do
-//           nothing.
-// Cost      A copy of what the grid, pairs and sweeps hold.
+// Misuse    Asserted, else does nothing: not within a query; pass the Pairs if the grid has any; restore() needs a
+//           saved state, equal settings, and Sweeps exactly if they were saved.
+// Cost      a copy of what the grid, pairs and sweeps hold
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
@@ -40,57 +36,53 @@ template <class Scalar>
 struct GridTwin;
 }
 
-/// Keeps a grid with its pairs and sweeps, and puts it back.
+/// A saved state of a grid with its pairs and sweeps.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT GridSnapshot {
 public:
-    /// An empty one.
+    /// Makes an empty snapshot.
     GridSnapshot() noexcept;
     ~GridSnapshot();
     GridSnapshot(GridSnapshot&& other) noexcept;
     GridSnapshot& operator=(GridSnapshot&& other) noexcept;
 
-    /// Saves a grid that has no Pairs.
+    /// Saves a grid without Pairs.
     void save(const Grid<Scalar>& grid);
     /// Saves the pairs, their grid, and the sweeps that they follow, if any.
     void save(const Pairs<Scalar>& pairs);
 
-    /// Puts a grid that has no Pairs back to what was saved of it, or of another grid with equal settings.
+    /// Restores the saved state into a grid without Pairs: the saved one, or one with equal settings.
     void restore(Grid<Scalar>& grid) const;
-    /// The same of pairs, their grid and the sweeps that they follow.
+    /// Restores the saved state into pairs, their grid, and the sweeps that they follow.
     void restore(Pairs<Scalar>& pairs) const;
 
-    /// Says why the snapshot cannot be restored into the grid, or the pairs, in a sentence; empty where it can. To
-    /// be asked about a snapshot that was read, which may be of another grid.
+    /// Returns why restore() would fail, as a sentence; empty if it can succeed. Ask this after read().
     [[nodiscard]] std::string faultFor(const Grid<Scalar>& grid) const;
     [[nodiscard]] std::string faultFor(const Pairs<Scalar>& pairs) const;
 
-    /// Makes room for restore(), which then takes no memory until the pairs, or their grid, have given some back.
-    /// Where memory runs out, nothing has changed. Misuse as of restore().
+    /// Makes room for restore(), which then allocates nothing, until the pairs or their grid release memory.
+    /// Throws std::bad_alloc, and changes nothing. Asserted: as restore().
     void makeRoom(Pairs<Scalar>& pairs) const;
 
-    /// Replaces what `bytes` held by the snapshot, which is not empty (asserted): to send or to keep. They begin
-    /// with a version and a checksum, and are the same for equal states. Numbers are as this processor has them.
-    /// Cost: O(what is saved).
+    /// Replaces `bytes` by the snapshot, to send or to keep. Equal states give equal bytes, with a version, a
+    /// checksum, and numbers in this processor's format. Asserted: the snapshot is not empty. Cost: O(state).
     void write(std::vector<std::byte>& bytes) const;
 
-    /// Takes what was written. Returns an empty string on success. Otherwise a sentence that says what is wrong with
-    /// the bytes, and changes nothing. Whatever the bytes, the snapshot that is read is one that a grid can have been
-    /// in, or is refused.
-    /// What is the same after restore() are boxes, ids, groups, pairs, sweeps and all that follows from these: not
-    /// which proxies rest, and so neither costs nor the order in which queries find proxies.
-    /// Cost: O(what is saved), and finding all pairs from scratch.
+    /// Reads what write() wrote. Returns an empty string; or a sentence about the fault in the bytes, and changes
+    /// nothing. Whatever the bytes, accepts only states that a grid can have. restore() then restores boxes, ids,
+    /// groups, pairs and sweeps, but not which proxies rest. So costs, and the order in which queries find proxies,
+    /// may differ. Cost: O(state), and finding all pairs from scratch.
     [[nodiscard]] std::string read(std::span<const std::byte> bytes);
 
-    /// The proxy that had this index; null where none had. Cost: O(1).
+    /// Returns the saved proxy with this index; null when there is none. Cost: O(1).
     [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept;
-    /// Grid::indexLimit() of the grid that was saved; 0 where none was.
+    /// Grid::indexLimit() of the saved grid; 0 for an empty snapshot.
     [[nodiscard]] std::uint32_t indexLimit() const noexcept;
 
-    /// Whether there is nothing to restore.
+    /// True when there is nothing to restore.
     [[nodiscard]] bool isEmpty() const noexcept { return twin_ == nullptr || !isSaved_; }
 
-    /// Bytes held, capacity included.
+    /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:

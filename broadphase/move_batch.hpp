@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Moves of many proxies on several threads, with the result of as many single moves in their order.
+// Moves many proxies on several threads, with the result of single moves in order.
 //
-// One thread writes a proxy's record. What a mobile proxy changes beside its record is a count and an entry in
-// the list of changes: each part of the batch keeps its own, and the parts are joined in order; of one that moves
-// within its slack it is the same. Any other proxy that moves (at rest, sweeping, with a NaN before or after) waits for
-// Store::move(), which the join calls in its turn.
+// One thread writes a proxy's record. Each part of the batch counts and lists its changes; the parts are joined in
+// order. Only mobile proxies, and proxies that stay within their slack, move this way. Others (at rest, sweeping,
+// with a NaN) wait for Store::move(), which the join calls in their turn.
 
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/store/store.hpp>
@@ -22,15 +21,15 @@
 
 namespace hashphase::detail {
 
-/// Where a proxy moves.
+/// A proxy and its new box.
 template <class Scalar>
 struct Move {
     std::uint32_t proxyIndex;
     Aabb<Scalar> box;
 };
 
-/// Whether no proxy is named twice: all indexOf(i) for i below `count` differ, and are below `indexLimit`, or
-/// kNoProxyIndex. Calls indexOf(i) on any thread. Cost: two passes.
+/// True when no proxy is named twice: all indexOf(i) differ and are below `indexLimit`, or are kNoProxyIndex. Calls
+/// indexOf(i) on any thread. Cost: two passes.
 template <class IndexOf>
 [[nodiscard]] bool areDistinct(MoveScratch& scratch, std::size_t count, std::size_t indexLimit,
                                ParallelFor parallelFor, const IndexOf& indexOf) {
@@ -40,7 +39,7 @@ template <class IndexOf>
     if (scratch.namedBy.size() < indexLimit) {
         scratch.namedBy = std::vector<std::atomic<std::uint32_t>>(indexLimit + indexLimit / 2);
     }
-    // Of several that name a proxy, one is the last to write; the others find that out.
+    // If several moves name a proxy, all but the last to write find that out.
     parallelFor(count, MoveScratch::kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (const std::uint32_t index = indexOf(i); index != kNoProxyIndex) {
@@ -67,15 +66,14 @@ class MoveBatch {
 public:
     explicit MoveBatch(Store<Scalar>& store) : store_(store), scratch_(store.scratchOfMoves()) {}
 
-    /// For each i below `count` calls prepare(i) once, on any thread; where it returns true, moves the proxy
-    /// as moveOf(i) says, which is called on any thread, perhaps twice. No proxy is named twice. Where
-    /// `parallelFor` throws, some are moved, and the rest are not.
+    /// Calls prepare(i) once for each i, on any thread. If it returns true, moves the proxy by moveOf(i), which is
+    /// called on any thread, perhaps twice. No proxy may be named twice. If `parallelFor` throws, some are moved.
     template <class Prepare, class MoveOf>
     void run(std::size_t count, ParallelFor parallelFor, const Prepare& prepare,
              const MoveOf& moveOf) {
         constexpr std::size_t kGrain = MoveScratch::kGrain;
         std::size_t first = 0;
-        // The first change makes a fresh table the one that is read.
+        // While a fresh table is in use, move one by one: the first change makes it the mobile one.
         for (; first < count && store_.tables.isFresh.load(std::memory_order_relaxed); ++first) {
             if (prepare(first)) {
                 moveInTurn(moveOf(first));
@@ -101,7 +99,7 @@ public:
                 join(number, [&](std::uint32_t offset) { return moveOf(begin + offset); });
             }
         };
-        // Where `parallelFor` throws, too.
+        // Also when `parallelFor` throws.
         const AtEnd<decltype(joinAll)> atEnd(joinAll);
         parallelFor(scratch_.parts.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t number = begin; number < end; ++number) {
@@ -122,7 +120,7 @@ private:
         AtEnd& operator=(const AtEnd&) = delete;
     };
 
-    static constexpr std::uint32_t kInTurn = std::uint32_t{1} << 31;  // beside a place in the part
+    static constexpr std::uint32_t kInTurn = std::uint32_t{1} << 31;  // flags a place in the part
 
     void moveInTurn(const Move<Scalar>& move) { store_.move(move.proxyIndex, move.box); }
 
@@ -141,7 +139,7 @@ private:
                            [&]() noexcept { entries[part.entryCount++] = move.proxyIndex; });
     }
 
-    // In the order of the batch.
+    // Joins the parts in the order of the batch.
     template <class MoveAt>
     void join(std::size_t number, const MoveAt& moveAt) {
         RoomyList<std::uint32_t>& waiting = store_.proxies.waiting;

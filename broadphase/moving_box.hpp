@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Boxes that move along a straight line during a frame, and when two of them first touch.
+// Boxes that move along a straight line during a frame, and the time when two of them first touch.
 //
 //     const MovingBox<float> bullet{box, velocity * seconds};
 //     if (const std::optional<double> time = firstContact(bullet, {wall})) { ... }
 //
-// Time      runs from 0, where the boxes are as given, to 1, where each has moved by its whole
-//           displacement. Both ends count.
-// Closed    Boxes that touch for a moment only, at a face, an edge or a corner, do touch.
-// Exact     Whether two boxes touch is decided without a rounding error: always in single precision, in
-//           double precision between 1e-140 and 1e300 m. The time is rounded to double precision.
-// Units     metres; times are fractions of the frame
-// Bad data  A box with a NaN touches nothing, nor does one with a NaN or infinite displacement.
+// Time      from 0 (boxes as given) to 1 (moved by the whole displacement), both inclusive
+// Closed    Touching a face, an edge or a corner for a moment counts.
+// Exact     Whether boxes touch has no rounding error: always in single precision, from 1e-140 to 1e300 m in double.
+//           The time is rounded to double precision.
+// Units     metres
+// Bad data  A box with a NaN, or with a NaN or infinite displacement, touches nothing.
 // Threads   values and pure functions; use them from any thread
-//
-// After Ericson, "Real-Time Collision Detection", 5.5.8, with the comparison made exact.
+// Source    Ericson, "Real-Time Collision Detection", 5.5.8, with an exact comparison
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/compiler.hpp>
@@ -29,15 +27,15 @@
 
 namespace hashphase {
 
-/// A box that moves: at the time t it is `box` shifted by t * displacement. By default it stands still.
+/// A box that moves: at the time t it is `box` shifted by t * displacement. It stands still by default.
 template <class Scalar>
 struct MovingBox {
-    Aabb<Scalar> box;                                        ///< at the time 0 [m]
-    Vector3<Scalar> displacement = Vector3<Scalar>::Zero();  ///< from the time 0 to 1 [m]
+    Aabb<Scalar> box;                                        ///< at time 0 [m]
+    Vector3<Scalar> displacement = Vector3<Scalar>::Zero();  ///< from time 0 to 1 [m]
 };
 
-/// Returns a box around all places of the moving box between the times `from` and `to`, by default the whole
-/// frame [m]. Rounded outward: it is a little larger than the exact one, never smaller. Cost: O(1).
+/// Returns a box [m] around the moving box between the times `from` and `to`. Rounded outward: a little too large,
+/// never too small. Cost: O(1).
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT Aabb<Scalar> sweptBounds(const MovingBox<Scalar>& moving,
                                                                    double from = 0, double to = 1);
@@ -50,24 +48,24 @@ template <class Scalar>
 
 namespace detail {
 
-/// As firstContact(), slower, and right where rounding would decide.
+/// firstContact(), slower, and correct if rounding would decide.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::optional<double> firstContactExactly(
     const MovingBox<Scalar>& a, const MovingBox<Scalar>& b) noexcept;
 
-/// A time as computed is off by less than this share of it.
+/// Computed times have a relative error below this.
 inline constexpr double kTimeDoubt = 0x1p-49;
-/// Below this, shares mean nothing.
+/// Below this, a relative error means nothing.
 inline constexpr double kTiniest = 0x1p-1000;
 
 }  // namespace detail
 
-/// Returns the first time at which the two boxes touch: 0 when they touch from the start, nothing when they
-/// never touch in the frame. Cost: some ten nanoseconds; half a microsecond where rounding would decide.
+/// Returns the first time at which the two boxes touch: 0 if they touch from the start, nothing if they never touch
+/// in the frame. Cost: some ten nanoseconds; half a microsecond if rounding would decide.
 template <class Scalar>
 [[nodiscard]] inline std::optional<double> firstContact(const MovingBox<Scalar>& a,
                                                         const MovingBox<Scalar>& b) noexcept {
-    // Slabs. Differences have the right sign, and one rounding; so do their quotients.
+    // Slabs. Differences and their quotients have the right sign, and one rounding each.
     double begin = 0;
     double end = 1;
     double sum = 0;
@@ -91,7 +89,7 @@ template <class Scalar>
         begin = ahead * inverse > begin ? ahead * inverse : begin;
         end = opens < end ? opens : end;
     }
-    // No NaN, and nothing infinite, not even an inverse.
+    // No NaN and no infinity, not in inverses either.
     const bool isUsual = detail::isFinite(sum) & !isTiny;
     if (isUsual && neverMeet) {
         return std::nullopt;
@@ -105,26 +103,26 @@ template <class Scalar>
     return begin < end ? std::optional(begin) : std::nullopt;
 }
 
-/// Every box that a moving box meets on its way. Key: the time of the first contact, by firstContact(). The
-/// boxes of the grid stand still. With CollectClosest a query finds the box that is hit first:
+/// Every box that a moving box meets on its way; the boxes of the grid stand still. Key: the time of the first
+/// contact, by firstContact(). CollectClosest finds the box that is hit first:
 ///
 ///     CollectClosest<float> hit;
 ///     grid.visit(MovingBoxRegion<float>({box, displacement}), hit);  // at the time hit.key()
 ///
-/// Where the moving box is a proxy of the grid, the query finds that proxy too: leave it out by a CollectIf.
+/// A moving proxy of the grid finds itself too: exclude it by CollectIf.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT MovingBoxRegion {
 public:
     /// Cost: O(1).
     explicit MovingBoxRegion(const MovingBox<Scalar>& moving);
 
-    /// The time of the first contact, rounded to Scalar, or -1 without a contact.
+    /// Returns the time of the first contact, rounded to Scalar; -1 without a contact.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& other) const noexcept {
         const std::optional<double> time = firstContact(moving_, MovingBox<Scalar>{other});
         return time ? static_cast<Scalar>(*time) : Scalar(-1);
     }
 
-    /// The way as a ray that is a little thicker than the box: the ray is rounded, key() is not.
+    /// The way as a ray, a little thicker than the box because of rounding.
     [[nodiscard]] const RayRegion<Scalar>& segment() const noexcept { return segment_; }
 
 private:

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Which proxies are near which: all neighbours of all proxies at once, as agents ask in every frame. A query
-// for each proxy would look at every pair twice. Here all boxes grow by half the distance, and one pass finds
-// those that overlap, as for pairs.
+// Finds all pairs of proxies within a distance, in one pass. Single queries would test every pair twice.
 //
 //     Neighbours<float> neighbours;
 //     for (const ProxyPair& pair : neighbours.find(grid, 5)) { ... }
 //
-// Threads   find() reads the grid, as queries do, and needs this object for itself.
-// Others    RadiusSearch (radius_search.hpp) lists positions within a radius, agent by agent.
+// Threads   find() reads the grid as a query does, and needs this object for itself.
+// See also  RadiusSearch (radius_search.hpp) lists positions within a radius, agent by agent.
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
@@ -26,21 +24,20 @@ namespace hashphase {
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Neighbours {
 public:
-    /// Returns every two proxies of the grid whose boxes are at most `distance` [m] apart, each pair once, in
-    /// any order. The distance is that between the nearest points (closed), 0 where boxes overlap. A negative
-    /// or NaN distance finds no pair; a box with a NaN has no neighbours. The result does not depend on
-    /// `parallelFor`, and is valid until the next call.
-    /// Cost: as an update of the grid, and the pairs; at most that of comparing all with all. Gives back
-    /// memory that has been room for more than eight times as many proxies, or pairs, in 256 calls in a row.
+    /// Returns every two proxies whose boxes are at most `distance` [m] apart, each pair once, in any order. The
+    /// distance is between the nearest points, 0 if boxes overlap. A negative or NaN distance finds nothing; a box
+    /// with a NaN has no neighbours. The result does not depend on `parallelFor`, and is valid until the next call.
+    /// Surplus memory is freed after 256 calls in a row with over eight times the room needed.
+    /// Cost: as a grid update, and the pairs; at most all compared with all.
     [[nodiscard]] std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
                                                   ParallelFor parallelFor = serialFor) &;
 
     /// What the last find() cost; hits are pairs.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
-    /// Bytes held, capacity included.
+    /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back all memory. The pairs that find() returned are not valid any more.
+    /// Frees all memory. Invalidates the pairs that find() returned.
     void releaseMemory() noexcept;
 
 private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Which overlapping proxies make a pair, and what an update tells of pairs.
+// Which overlapping proxies make a pair, and what an update reports of pairs.
 //
 //     const auto areEnemies = [&](ProxyId a, ProxyId b) { return team[a.index] != team[b.index]; };
 //     for (const ProxyPair& pair : pairs.update(areEnemies).born) { ... }
 //
-// Where groups and masks suffice, Grid::setGroups() costs less than a filter.
+// If groups and masks suffice, Grid::setGroups() costs less than a filter.
 
 #include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
@@ -21,22 +21,21 @@
 
 namespace hashphase {
 
-/// Says which overlapping proxies make a pair. Made of a function that is asked about two proxies and returns
-/// whether they make a pair, or of one that is asked about many pairs at once.
+/// Decides which overlapping proxies make a pair: a function that is asked about two proxies, or about many pairs at
+/// once.
 ///
-/// Asked     once when two proxies begin to overlap; again about a refused candidate when one of the two has
-///           changed; again about any candidate by refilter(). Never about two that may not pair by their
-///           groups, or that are ignored.
-/// Order     ascending by ids. Thousands of candidates may come in parts, each part in that order.
-/// Threads   the thread that calls Pairs
-/// Misuse    The filter may ask the grid but must not change it (asserted).
+/// Asked    once when two proxies begin to overlap; again about a refused pair when one of the two has changed; again
+///          by refilter(). Never about ignored pairs, or pairs that groups refuse.
+/// Order    ascending by ids. Thousands of candidates may come in parts, each part in that order.
+/// Threads  the thread that calls Pairs
+/// Misuse   Asserted: the filter does not change the grid; it may query it.
 ///
-/// For parameters only, as FunctionRef: it refers to what it is given, be that a FunctionRef or another one.
+/// For parameters only, as FunctionRef: it refers to its function, without a copy.
 class PairFilter {
 public:
-    /// Gets two ids, the one with the lower index first.
+    /// Returns whether the two make a pair. The first id has the lower index.
     using OfOne = FunctionRef<bool(ProxyId, ProxyId)>;
-    /// Sets accepted[i], given as 0, to 1 where asked[i] make a pair. Both spans have the same length.
+    /// Sets accepted[i], 0 before, to 1 if asked[i] make a pair. Both spans have the same length.
     using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
 
     template <std::convertible_to<OfOne> Ask>
@@ -49,8 +48,7 @@ public:
     PairFilter(Ask&& ask [[HASHPHASE_LIFETIME_BOUND]])  // NOLINT: conversion is its purpose
         : ask_(ask) {}
 
-    /// Asks about all pairs, in one call or one by one, and writes the answers to `accepted`, which is as
-    /// long and holds zeros.
+    /// Asks about all pairs, and writes the answers to `accepted`, which has the same length and holds zeros.
     void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
         ask_(asked, accepted);
     }
@@ -66,22 +64,22 @@ private:
     OfMany ask_;
 };
 
-/// The filter that refuses nothing.
+/// The filter that accepts every pair.
 [[nodiscard]] inline bool acceptAllPairs(ProxyId /*first*/, ProxyId /*second*/) noexcept {
     return true;
 }
 
-/// The pairs that began and ended, each list sorted. Lists of update() are valid until the next update().
-/// Lists of findPairsNow() and of the refilter calls are valid until the next of these calls or update().
+/// The pairs that began and ended, each list sorted. Lists of update() are valid until the next update(), lists of
+/// other calls until the next such call or update().
 struct PairChanges {
-    std::span<const ProxyPair> born;  ///< pairs now that were none before
-    std::span<const ProxyPair> died;  ///< pairs no more; may name a proxy that was removed
+    std::span<const ProxyPair> born;  ///< new pairs
+    std::span<const ProxyPair> died;  ///< ended pairs; may name removed proxies
 };
 
 /// What an update cost.
 struct PairCost {
     std::uint64_t boxesTested = 0;  ///< in all searches for candidates
-    /// Candidates tested whether they still overlap: those of which one proxy is mobile.
+    /// Candidates with a mobile proxy, tested whether they still overlap.
     std::uint64_t pairsWatched = 0;
     UpdateCost grid;  ///< what the update of the grid cost
 };

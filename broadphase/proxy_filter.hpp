@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+// Filters that decide which proxies a query may find.
+
 #include <broadphase/function_ref.hpp>
 #include <broadphase/proxy_id.hpp>
 
@@ -8,23 +10,21 @@
 
 namespace hashphase {
 
-/// Says whether a query may find a proxy: by group and mask (integration/bullet/group_filter.hpp), by team,
-/// or by any data that the caller keeps by ProxyId::index. Asked only about proxies in the region. Queries
-/// that run on several threads ask on all of them.
+/// Returns whether a query may find a proxy, for example by team or by group and mask
+/// (integration/bullet/group_filter.hpp). Asked only about proxies in the region. Threads: those of the query.
 ///
-/// For parameters only: a filter refers to the function that it is made of, and keeps no copy. Keep the
-/// function itself:
+/// For parameters only: it refers to the function. Keep the function itself:
 ///
 ///     const auto enemies = [&](ProxyId id) { return team[id.index] != team[self.index]; };  // right
 ///     const ProxyFilter enemies = [&](ProxyId id) { ... };  // wrong: the lambda is gone (Clang warns)
 using ProxyFilter = FunctionRef<bool(ProxyId)>;
 
-/// The filter that refuses nothing.
+/// The filter that accepts every proxy.
 [[nodiscard]] inline bool acceptAll(ProxyId /*id*/) noexcept {
     return true;
 }
 
-/// A collector that hands on to another collector what the filter accepts:
+/// Passes the proxies that a filter accepts to another collector:
 ///
 ///     CollectIf enemies(all, [&](ProxyId id) { ... });
 ///     grid.visit(region, enemies);
@@ -43,7 +43,7 @@ public:
             collector_.add(id, key);
         }
     }
-    /// That of the other collector, so that the search shrinks as with it alone.
+    /// The other collector's limit, so that the search shrinks as for it alone.
     [[nodiscard]] auto limit() const { return collector_.limit(); }
 
 private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Names for the proxies of a grid. A proxy stands for an object of the caller by its box.
+// Ids of the proxies of a grid. A proxy represents an object of the caller by its box.
 //
 //     const ProxyId id = grid.add(box);
 //     objects.resize(grid.indexLimit());
@@ -16,22 +16,20 @@
 
 namespace hashphase {
 
-/// A value that names one proxy of one grid. Zero is null. Ids are ordered by index, then by generation.
+/// Names one proxy of one grid. ProxyId{} is null. Ordered by index, then by generation.
 struct ProxyId {
-    /// Small and dense, so that callers keep their own data in an array by index. Below the largest number of
-    /// proxies that were ever alive at once; proxies removed since the last update count, if that update saw
-    /// them.
+    /// Small and dense, for the caller's own data in arrays by index. Below the largest number of proxies ever alive
+    /// at once; removed ones count until the next update.
     std::uint32_t index = 0;
-    /// Tells a proxy from earlier ones with the same index.
+    /// Distinguishes a proxy from earlier ones with the same index.
     std::uint32_t generation = 0;
 
-    /// True for ProxyId{}, which names no proxy. An id whose proxy was removed is not null: ask
-    /// Grid::contains().
+    /// True for ProxyId{}, which names no proxy. The id of a removed proxy is not null: see Grid::contains().
     [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
     friend constexpr auto operator<=>(const ProxyId&, const ProxyId&) = default;
 };
 
-/// Two proxies that make a pair, first.index < second.index. Ordered by first, then by second.
+/// A pair of proxies, first.index < second.index. Ordered by first, then by second.
 struct ProxyPair {
     ProxyId first;
     ProxyId second;
@@ -39,14 +37,13 @@ struct ProxyPair {
     friend constexpr auto operator<=>(const ProxyPair&, const ProxyPair&) = default;
 };
 
-/// How a proxy is expected to behave: mobile like a body, or resting like a wall. A hint that saves work and
-/// never changes a result: a resting proxy may move, a mobile proxy that stays unchanged comes to rest by
-/// itself.
+/// How a proxy is expected to behave: mobile like a body, or resting like a wall. A hint that changes no result: a
+/// resting proxy may move, and an unchanged mobile one comes to rest.
 enum class Mobility : std::uint8_t { mobile, resting };
 
 namespace detail {
 
-/// A hash for ids with an index and a generation. Different ids have different numbers to hash.
+/// A hash for ids with an index and a generation.
 template <class Id>
 struct IdHash {
     [[nodiscard]] std::size_t operator()(const Id& id) const noexcept {
@@ -57,6 +54,6 @@ struct IdHash {
 }  // namespace detail
 }  // namespace hashphase
 
-/// For keys of std::unordered_map. Data about every proxy is better kept in an array by ProxyId::index.
+/// For keys of std::unordered_map. For data about every proxy, prefer an array by ProxyId::index.
 template <>
 struct std::hash<hashphase::ProxyId> : hashphase::detail::IdHash<hashphase::ProxyId> {};

@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the agents within a radius of each agent, for all agents at once, as AI asks in every frame.
+// Finds the neighbours of all agents within a radius, at once, as AI needs in every frame.
 //
 //     search.take(grid, 10);
 //     search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) { ... });
 //
-// A frame    take() copies where all proxies are; then ask as often as you like.
-// Agents     are proxies, numbered from 0 in spatial order by each take(), at the centres of their
-//            boxes: see positionOf() in position_region.hpp.
-// Neighbours of an agent are the other agents at most `radius` away: (dx^2 + dy^2) + dz^2 <= radius^2, each
-//            operation rounded to Scalar. With a radius beyond 2^60 or below 2^-60 (double: 2^480, 2^-480),
-//            the differences and the radius are first multiplied by a power of two that brings the radius
-//            near 1. So of two agents either both or none is the other's neighbour, and the answer is the
-//            same with all instruction sets and on any number of threads.
-// Bad data   A proxy without a position, because its box has a NaN or an infinite face or is inverted, is no
-//            agent: see leftOutCount(). Within a negative or NaN radius no agent has neighbours; within an
-//            infinite one all other agents are neighbours.
-// Threads    Everything but the accessors needs this object for itself; take() reads the grid, as
-//            queries do.
-// Units      metres, or whatever the grid's are.
-//
-// Neighbours (neighbours.hpp) lists pairs of boxes instead.
+// A frame     take() copies the positions of all proxies; then ask any number of questions.
+// Agents      proxies at the centres of their boxes (positionOf() in position_region.hpp). Each take() numbers them
+//             from 0, in spatial order.
+// Neighbours  the other agents with (dx^2 + dy^2) + dz^2 <= radius^2, each operation rounded to Scalar. Radii outside
+//             2^-60 to 2^60 (double: 2^-480 to 2^480) are first scaled by a power of two. So the relation is
+//             symmetric, and equal on all instruction sets and any number of threads.
+// Bad data    A proxy with a NaN, infinite or inverted box is no agent: see leftOutCount(). A negative or NaN radius
+//             gives no neighbours, an infinite one all other agents.
+// Threads     All except accessors needs this object for itself. take() reads the grid, as queries do.
+// Units       metres, or the grid's unit of length
+// See also    Neighbours (neighbours.hpp) lists pairs of boxes.
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
@@ -42,8 +37,7 @@
 
 namespace hashphase {
 
-/// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing, unless more threads
-/// work at the same time than ever before.
+/// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing, except for additional threads.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT RadiusSearch {
 public:
@@ -59,11 +53,10 @@ public:
 
     // --- The agents ------------------------------------------------------------------------------
 
-    /// Takes the proxies that the filter accepts, as they are now, for questions about `radius` [m].
-    /// The filter is asked on the loop's threads, about some proxies twice; it changes neither the grid
-    /// nor this object (asserted). Where memory runs out, or the filter throws, there are no agents.
-    /// Cost: a few passes over the proxies of the grid, whether or not they are filed. Gives back memory
-    /// that has been room for more than eight times as many proxies in 256 calls in a row.
+    /// Takes the present proxies that the filter accepts, for questions about `radius` [m]. The filter runs on the
+    /// threads of `parallelFor`, for some proxies twice. If memory runs out or the filter throws, there are no
+    /// agents. Surplus memory is freed after 256 calls in a row with over eight times the room needed. Asserted: the
+    /// filter changes neither the grid nor this object. Cost: a few passes over the grid's proxies.
     void take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter = acceptAll,
               ParallelFor parallelFor = serialFor);
 
@@ -72,11 +65,10 @@ public:
         return static_cast<std::uint32_t>(ids_.size());
     }
 
-    /// Number of proxies that are no agents because they have no position.
+    /// Number of accepted proxies without a position, which are no agents.
     [[nodiscard]] std::uint32_t leftOutCount() const noexcept { return leftOut_; }
 
-    /// The proxy of an agent, and its position [m], by the agent's number below size() (asserted). ids()
-    /// returns all ids by that number.
+    /// Returns the proxy of an agent, or its position [m]; ids() returns all ids by agent. Asserted: agent < size().
     [[nodiscard]] ProxyId id(std::uint32_t agent) const {
         HASHPHASE_ASSERT(agent < size(), "Agents have numbers below size().");
         return ids_[agent];
@@ -89,11 +81,10 @@ public:
 
     // --- Questions -------------------------------------------------------------------------------
 
-    /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent, on the
-    /// threads of `parallelFor`. The neighbours' numbers are valid during the call, in an order that does not
-    /// depend on `parallelFor`. visit() may ask this object for ids and positions, and for no more
-    /// (asserted). Returns the cost; hits are neighbours. Cost: comparing each agent with those in the cells
-    /// around it; at most all with all.
+    /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent, on the threads of
+    /// `parallelFor`. The neighbours are valid during the call; their order does not depend on `parallelFor`. Returns
+    /// the cost; hits are neighbours. Asserted: visit() asks this object only for ids and positions. Cost: each agent
+    /// against the cells around it; at most all with all.
     template <std::invocable<std::uint32_t, std::span<const std::uint32_t>> Visit>
     QueryCost forEach(Visit&& visit, ParallelFor parallelFor = serialFor) {
         using Target = std::remove_reference_t<Visit>;
@@ -105,28 +96,28 @@ public:
                     parallelFor);
     }
 
-    /// Sets counts[agent] to how many neighbours the agent has; size() numbers (asserted). Cheaper
-    /// than forEach().
+    /// Sets counts[agent] to the agent's number of neighbours. Cheaper than forEach(). Asserted: counts.size() ==
+    /// size().
     QueryCost count(std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 
-    /// Sets counts[agent * groupCount + group] to how many neighbours of that group the agent has;
-    /// size() * groupCount numbers (asserted), with a groupCount of at most kMostGroups (asserted).
-    /// groupOf(ProxyId) is asked once for every agent, on the loop's threads; an agent whose group is not
-    /// below groupCount is not counted. Cost: that of count(), and a pass over the agents.
+    /// Sets counts[agent * groupCount + group] to the agent's number of neighbours in that group. Asks
+    /// groupOf(ProxyId) once per agent, on the threads of `parallelFor`. Agents with a group of groupCount or more
+    /// are not counted. Asserted: counts.size() == size() * groupCount; groupCount <= kMostGroups. Cost: as count(),
+    /// and a pass over the agents.
     QueryCost countGroups(std::uint32_t groupCount, FunctionRef<std::uint32_t(ProxyId)> groupOf,
                           std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 
-    /// Bytes held, capacity included.
+    /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back all memory, and with it all agents. Not within a filter or a visitor (asserted).
+    /// Frees all memory, and removes all agents. Asserted: not within a filter or a visitor.
     void releaseMemory() noexcept;
 
 private:
-    /// Where a proxy is, and which one.
+    /// Position and generation of a proxy.
     struct Staged {
         std::array<Scalar, 3> position;
-        std::uint32_t generation;  // 0: none that the filter accepts
+        std::uint32_t generation;  // 0: not alive, or refused by the filter
     };
     struct Tile;
 
@@ -146,8 +137,8 @@ private:
         return few_.empty() ? static_cast<std::uint32_t>(place) : few_[place];
     }
 
-    std::vector<std::uint32_t> few_;  // indices, where few have proxies
-    std::size_t placeCount_ = 0;      // of those indices, or of all
+    std::vector<std::uint32_t> few_;  // indices, if few have proxies
+    std::size_t placeCount_ = 0;      // number of these indices, or of all
     std::vector<Staged> staged_;      // by place among them
     std::vector<std::uint32_t> cellOfPlace_;
     detail::PeakWatch peaks_;
@@ -156,7 +147,7 @@ private:
     detail::PointSample sample_;
     detail::WrappedGrid wrappedGrid_;
 
-    std::vector<std::uint32_t> cellStart_;  // the first agent of each cell, and the end
+    std::vector<std::uint32_t> cellStart_;  // first agent of each cell, and the end
     std::vector<std::uint32_t> places_;     // of agents, by cell
     std::vector<ProxyId> ids_;
     std::array<std::vector<Scalar>, 3> columns_;  // positions; kColumnPadding longer
@@ -165,7 +156,7 @@ private:
     detail::RadiusView<Scalar> view_{};
 
     std::mutex tilesMutex_;
-    std::vector<std::unique_ptr<Tile>> tiles_;  // idle; as many as threads were at work at once
+    std::vector<std::unique_ptr<Tile>> tiles_;  // idle; one per thread at work at once
 };
 
 extern template class RadiusSearch<float>;

@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Regions say where a query looks. A region has two members:
+// Regions define where a query looks. A region has two members:
 //
-//   key(box)                returns the box's distance in the region's own measure (0 or more), or a
-//                           negative number when the box is not in the region
-//   bounds()                returns a box that overlaps every box with a key
+//   key(box)   returns the box's distance in the region's own measure (0 or more); negative outside the region
+//   bounds()   returns a box that overlaps every box with a key
 //
 //     CollectClosest<float> closest;
 //     grid.visit(SphereRegion<float>(center, 10), closest);  // the box nearest to the centre, up to 10 m
 //
-// key() decides what is found. bounds() only saves work: it may be too large, never too small. A region with
-// the constant kIsItsBounds holds every box that overlaps bounds(), with the key 0. A region along a line has
-// segment() in place of bounds(): a RayRegion that meets every box with a key, no later on its way than that
-// key. A region bounded by planes has volume(): see convex_region.hpp.
+// key() decides the result. bounds() only saves work: it may be too large, never too small. With the constant
+// kIsItsBounds, every box that overlaps bounds() has the key 0. Instead of bounds(), a region along a line has
+// segment(), a RayRegion that meets every box with a key, no later than that key. A convex region has volume().
 //
-// Others   PositionRegion (positions, not boxes), CellsRegion (an estimate), MovingBoxRegion (the first
-//          contact of a moving box), ConvexRegion (frusta). Any class with these members is a region.
+// Others   PositionRegion (positions, not boxes), CellsRegion (an estimate), MovingBoxRegion (first contact of a
+//          moving box), ConvexRegion (frusta), and any class with these members
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
-// NaN      a NaN in a region makes it empty
+// NaN      A region with a NaN is empty.
 // Threads  values; use them from any thread
 
 #include <broadphase/aabb.hpp>
@@ -33,7 +31,7 @@
 
 namespace hashphase {
 
-/// Every box that overlaps `box` (closed). Key: 0. Infinite and inverted boxes mean what overlaps() says.
+/// Every box that overlaps `box` (closed), as overlaps() defines it, infinite and inverted boxes included. Key: 0.
 template <class Scalar>
 struct BoxRegion {
     static constexpr bool kIsItsBounds = true;
@@ -47,9 +45,8 @@ struct BoxRegion {
     [[nodiscard]] const Aabb<Scalar>& bounds() const noexcept { return box; }
 };
 
-/// Every box within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the centre to
-/// the box, 0 where the centre is inside. A negative radius makes the region empty; an infinite one holds
-/// every box. PositionRegion measures to the middle of the box instead.
+/// Every box within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the centre to the box, 0
+/// if the centre is inside. A negative radius is empty; an infinite one holds every box.
 template <class Scalar>
 class SphereRegion {
 public:
@@ -57,8 +54,8 @@ public:
     SphereRegion(const Vector3<Scalar>& center, Scalar radius)
         : center_(center), radius_(radius), scale_(detail::unitScale(radius)) {}
 
-    /// The squared distance [m^2], or -1 outside. It may round to 0 or infinity where it leaves the range of
-    /// Scalar; whether the box is in the ball is decided without that rounding.
+    /// Returns the squared distance [m^2]; -1 outside. It may round to 0 or infinity, which does not affect whether
+    /// the box is in the ball.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         Scalar outside[3] = {};
         for (int axis = 0; axis < 3; ++axis) {
@@ -81,7 +78,7 @@ public:
                 Vector3<Scalar>::Constant(isEmpty ? Limits::quiet_NaN() : Limits::infinity());
             return {-all, all};
         }
-        // Rounded outward: key() rounds, and must not find what the bounds leave out.
+        // Rounded outward: key() rounds, and must not find a box outside the bounds.
         const Scalar reach = center_.cwiseAbs().maxCoeff() + radius_;
         const Scalar padded = radius_ + 4 * Limits::epsilon() * reach + Limits::min();
         const Vector3<Scalar> half = Vector3<Scalar>::Constant(padded);
@@ -94,20 +91,19 @@ private:
     Scalar scale_;
 };
 
-/// Every box that a segment meets, or that another box meets while it moves along the segment (a "fat" ray).
-/// Key: the fraction of the way at which the ray enters the box, 0 when it begins inside.
+/// Every box that a segment meets, or that another box meets while it moves along the segment (a "fat" ray). Key: the
+/// fraction of the way at which the ray enters the box, 0 if it begins inside.
 ///
-/// Closed: grazing a face, an edge or a corner counts, and rounding errs to the side of a hit. A segment
-/// without a length is a point, or a box that stands still. A segment with an infinite end, or with a length
-/// that is infinite along an axis, is empty.
+/// Closed: grazing a face, an edge or a corner counts, and rounding favours a hit. The length may be 0. A segment
+/// with an infinite end or length is empty.
 ///
 ///     CollectClosest<float> first;
 ///     grid.visit(RayRegion<float>(from, to), first);  // enters at from + first.key() * (to - from)
 template <class Scalar>
 class RayRegion {
 public:
-    /// The segment from `from` to `to` [m]. `fatness` [m] is the moving box relative to the moving point, for
-    /// example (-halfExtents, halfExtents); by default it is the point itself.
+    /// The segment from `from` to `to` [m]. `fatness` [m] is the moving box relative to the moving point, for example
+    /// (-halfExtents, halfExtents); a point by default.
     RayRegion(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
               const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
         : from_(from), direction_(to - from), fatness_(fatness) {
@@ -117,7 +113,7 @@ public:
         } else if (direction_.cwiseAbs().maxCoeff() > 1 / Limits::min()) {
             scale_ = Scalar(0.125);
         }
-        // key() takes the fatness from numbers that were rounded before.
+        // key() computes with rounded numbers, so the fatness grows by their rounding.
         const auto rounding = [](const Vector3<Scalar>& corner) {
             return (Limits::epsilon() * corner.cwiseAbs().cwiseMin(Limits::max())).eval();
         };
@@ -127,14 +123,14 @@ public:
         inverse_ = (scale_ * direction_).cwiseInverse();
         for (int axis = 0; axis < 3; ++axis) {
             if (!detail::isFinite(inverse_[axis]) && !detail::isNan(inverse_[axis])) {
-                // Too short a way to be inverted makes what moves as much thicker.
+                // A way too short to be inverted thickens the box instead.
                 (direction_[axis] > 0 ? fatness_.max() : fatness_.min())[axis] += direction_[axis];
                 direction_[axis] = 0;
             }
         }
     }
 
-    /// The fraction from 0 to 1 at which the ray enters the box, or -1 when it misses the box.
+    /// Returns the fraction from 0 to 1 at which the ray enters the box; -1 for a miss.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         if (HASHPHASE_OVERLOOKS_NAN && isEmpty()) {
             return -1;
@@ -144,7 +140,7 @@ public:
         Scalar enter = 0;
         Scalar exit = last_;
         for (int axis = 0; axis < 3; ++axis) {
-            // Relative to the ray first: far from the origin, the small numbers stay exact.
+            // Relative to the ray first, which keeps small numbers exact far from the origin.
             const Scalar relativeMin = box.min()[axis] - from_[axis];
             const Scalar relativeMax = box.max()[axis] - from_[axis];
             if (direction_[axis] == 0) {
@@ -171,16 +167,16 @@ public:
         return enter <= exit ? std::min(enter, Scalar(1)) : Scalar(-1);
     }
 
-    /// True when an end or the length is NaN or infinite: no box has a key.
+    /// True when no box has a key: an end or the length is NaN or infinite.
     [[nodiscard]] bool isEmpty() const noexcept { return detail::anyNan(direction_); }
     /// Where the ray begins [m].
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
-    /// `to` - `from` [m], but 0 along an axis where this is too short to be inverted; NaN when isEmpty().
+    /// `to` - `from` [m], but 0 along an axis where it is too short to be inverted; NaN when isEmpty().
     [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
-    /// The box given to the constructor [m], or one that is thicker by a rounding error.
+    /// The box given to the constructor [m], thicker by at most a rounding error.
     [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
 
-    /// Grids search along this line, which is as thick as the region, in a tree of boxes instead of cells.
+    /// Makes grids search along this line in a tree of boxes instead of cells.
     [[nodiscard]] const RayRegion& segment() const noexcept { return *this; }
 
 private:
@@ -190,8 +186,8 @@ private:
     Vector3<Scalar> direction_;
     Vector3<Scalar> inverse_;  // of scale_ * direction_
     Aabb<Scalar> fatness_;
-    Scalar last_ = 1;  // key at which the way ends, beyond 1 where that would be rounded
-    // A power of two: less than 1 where the inverse would be denormal, and lose digits, or be flushed.
+    Scalar last_ = 1;  // key at the end of the way, beyond 1 if rounding matters
+    // A power of two: below 1 if the inverse would be denormal.
     Scalar scale_ = 1;
 };
 

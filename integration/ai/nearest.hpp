@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Which proxies are nearest to a point, by position.
+// Finds the proxies nearest to a point, by position.
 //
 // Threads   Reads the grid, as queries do.
-// Bad data  With a point that is not finite, or a negative or NaN distance, no proxy is found. Proxies
-//           without a position (position_region.hpp) are never found.
+// Bad data  Finds nothing with a point that is not finite, or a negative or NaN distance. Never finds proxies without
+//           a position (position_region.hpp).
 
 #include <broadphase/collectors.hpp>
 #include <broadphase/grid.hpp>
@@ -19,17 +19,11 @@
 
 namespace hashphase {
 
-/// Finds the `count` proxies nearest to `point` [m] that the filter accepts and whose positions are at most
-/// `maximalDistance` [m] away, which may be infinite. Replaces what `nearest` held: from near to far, with
-/// the squared distances [m^2] as keys, of equal keys the smallest id first. Finds fewer when there are
-/// fewer. Leaves out `self`, as a rule the proxy that asks; null leaves out none. The filter may be asked
-/// about a proxy several times. Returns the cost.
-///
-///     std::vector<KeyedProxy<float>> nearest;
-///     findNearest(grid, positionOf(grid.box(agent)), 5, 100, nearest, acceptAll, agent);
-///
-/// Looks in balls of growing size. Cost: a few balls that hold about `count` proxies, where proxies are as
-/// dense as at the point; at most reading the grid three times, and once for every doubling of the distance.
+/// Finds the `count` accepted proxies nearest to `point` [m], at most `maximalDistance` [m] away, which may be
+/// infinite. Replaces `nearest`: near to far, with squared distances [m^2] as keys; of equal keys the smallest id
+/// first. Leaves out `self`, usually the asking proxy, if not null. May ask the filter about a proxy several times.
+/// Returns the cost. Cost: searches growing balls: a few that hold about `count` proxies if density is even; at most
+/// as reading the grid three times, and once for each doubling of the distance.
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost findNearest(const Grid<Scalar>& grid,
                                           const Vector3<std::type_identity_t<Scalar>>& point,

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Which proxies are near an agent: exactly, or as an estimate by cells (paper, "AI proximity decisions").
-// For the nearest n see findNearest() in integration/ai/nearest.hpp, for all agents at once
-// broadphase/radius_search.hpp and broadphase/neighbours.hpp.
+// Finds the proxies near an agent, exactly or as an estimate by cells (paper, "AI proximity decisions").
 //
-// Distance  from position to position, that is between the centres of boxes; the ball is closed.
-// Agent     `self` is a proxy to leave out, as a rule the one that asks; null leaves out none.
-// Results   replace what `found` held, each proxy once, sorted by id. Nothing is allocated where the vector
-//           has room.
-// Threads   Both functions read the grid, as queries do.
-// Bad data  With a position that is not finite, or a negative or NaN radius, no proxy is found. An infinite
-//           radius finds every proxy that has a position (position_region.hpp).
+// Distance  Between positions, that is centres of boxes. The ball is closed.
+// Agent     Leaves out `self`, usually the asking proxy, if not null.
+// Results   Replace `found`: each proxy once, sorted by id. Allocates nothing if the vector has room.
+// Threads   Reads the grid, as queries do.
+// Bad data  Finds nothing with a position that is not finite, or a negative or NaN radius. An infinite radius finds
+//           every proxy with a position (position_region.hpp).
+// Others    nearest.hpp for the n nearest; broadphase/radius_search.hpp and neighbours.hpp for all agents at once
 
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
@@ -22,8 +20,8 @@
 
 namespace hashphase {
 
-/// Finds the proxies whose position is within `radius` [m] of `position` [m]. Returns the cost. Cost: the
-/// cells around, at most one test for each proxy, as Grid::visit() says, and sorting what is found.
+/// Finds the proxies whose position is within `radius` [m] of `position` [m]. Returns the cost. Cost: Grid::visit()
+/// of the ball, and sorting.
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost findWithin(const Grid<Scalar>& grid,
                                          const Vector3<std::type_identity_t<Scalar>>& position,
@@ -31,13 +29,11 @@ HASHPHASE_AI_EXPORT QueryCost findWithin(const Grid<Scalar>& grid,
                                          std::vector<ProxyId>& found,
                                          ProxyFilter filter = acceptAll, ProxyId self = {});
 
-/// Finds the proxies whose box touches a cell, of Grid::cellSize(), that the ball's box touches
-/// (cells_region.hpp). These are all proxies within the radius, and others, none of whose boxes is farther
-/// away than sqrt(3) * (radius + cell size). No distance is computed.
-/// Of the proxies found, 1, 2, 3 and 4 in 10 are really within a radius of 1, 2, 4 and 8 cells, at any
-/// density, where agents are half as large as the cells; never many more, as a ball fills about half of its
-/// box. Saves time only where proxies are counted, by Grid::visit(CellsRegion, CollectCount), and the radius
-/// is some cells; for lists findWithin() takes less. Cost: at most as findWithin().
+/// Finds the proxies whose box touches a cell, of Grid::cellSize(), that the ball's box touches (cells_region.hpp).
+/// These are all proxies within the radius, and others, none farther away than sqrt(3) * (radius + cell size). With
+/// agents half as large as cells, and radii of 1, 2, 4 and 8 cells, 1, 2, 3 and 4 in 10 of these are within the
+/// radius. findWithin() lists faster. To count, with a radius of several cells, use Grid::visit(CellsRegion,
+/// CollectCount). Returns the cost. Cost: at most as findWithin().
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost estimateWithin(const Grid<Scalar>& grid,
                                              const Vector3<std::type_identity_t<Scalar>>& position,

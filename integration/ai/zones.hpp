@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Zones of interest: volumes that know which proxies are in them, and tell which enter, stay and leave
-// (paper, "areas of interest"). Keep what a zone means in an array by ZoneId::index.
+// Zones of interest: volumes that report which proxies enter, stay and leave (paper, "areas of interest"). Keep your
+// data about zones by ZoneId::index.
 //
-// A frame   Move bodies and zones, then update() once: each proxy in a zone, or that has left it, is in
-//           exactly one event of that zone.
-// Grid      The grid holds the bodies; zones are not filed in it. Give update() the same grid always, or
-//           another one after forgetOccupants(). After a Grid::shiftOrigin(), set() every zone where it is
-//           now before the next update(): then its occupants stay.
-// Rollback  A copy is a snapshot, occupants included: assign it together with GridSnapshot::restore(), and the
-//           next update() tells what it told the first time. Spans that were handed out are void then.
-// Threads   update(), add(), set() and remove() need this object for themselves; update() reads the grid, as
-//           queries do. All else is const and may be called from any number of threads.
-// Failure   Where memory runs out, or a filter throws, nothing has happened: the next update() tells what
-//           this one would have told.
-// Bad data  A zone whose shape has a NaN or a negative radius holds no proxy. An inverted box means what
-//           overlaps() says.
-// Misuse    An id of no zone is asserted. An id of other Zones is, too, unless a zone here has the same id.
+// Frame      Move bodies and zones, then update() once. A proxy in a zone, or that left it, is in one event of that
+//            zone.
+// Grid       Zones are not in the grid. Pass the same grid always, or call forgetOccupants() before another one.
+//            After Grid::shiftOrigin(), set() every zone to its new place before the next update(): then occupants
+//            stay.
+// Rollback   A copy is a snapshot with occupants. Assign it together with GridSnapshot::restore(): the next update()
+//            repeats its events. Earlier spans are invalid.
+// Threads    Const functions may run on any number of threads. All else needs this object for itself; update() reads
+//            the grid, as queries do.
+// Callbacks  Asked on all threads. Asserted: they neither change nor update zones.
+// Failure    If memory runs out or a callback throws, nothing has happened: the next update() reports the same
+//            events.
+// Bad data   A zone with a NaN or a negative radius holds no proxy. For inverted boxes, see overlaps().
+// Misuse     Asserted: ids are valid. An id of other Zones may pass for one of these.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/grid.hpp>
@@ -35,7 +35,7 @@
 
 namespace hashphase {
 
-/// A value that names one zone; zero is null. As in a ProxyId, `index` is small and dense.
+/// Names one zone; zero is null. As in a ProxyId, `index` is small and dense.
 struct ZoneId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
@@ -45,20 +45,20 @@ struct ZoneId {
     friend constexpr auto operator<=>(const ZoneId&, const ZoneId&) = default;
 };
 
-/// Which part of a proxy has to be in a zone.
+/// The part of a proxy that must be in a zone.
 enum class Presence : std::uint8_t {
-    position,  ///< its position (position_region.hpp), and of course its box
+    position,  ///< its position (position_region.hpp)
     box,       ///< any part of its box
 };
 
-/// A closed volume. A ConvexRegion made for Containment::inside wants the whole box inside.
+/// A closed volume. A ConvexRegion with Containment::inside needs the whole box inside.
 template <class Scalar>
 struct Zone {
     std::variant<BoxRegion<Scalar>, SphereRegion<Scalar>, ConvexRegion<Scalar>> shape;
     Presence presence = Presence::position;
 };
 
-/// A zone and a proxy that entered it, stayed in it or left it. Ordered by zone, then by proxy.
+/// A zone, and a proxy that entered, stayed or left. Ordered by zone, then by proxy.
 struct ZoneEvent {
     ZoneId zone;
     ProxyId proxy;
@@ -66,7 +66,7 @@ struct ZoneEvent {
     friend constexpr auto operator<=>(const ZoneEvent&, const ZoneEvent&) = default;
 };
 
-/// What happened between two updates, each list sorted by zone, then proxy.
+/// The events between two updates, each list sorted by zone, then by proxy.
 struct ZoneEvents {
     std::span<const ZoneEvent> entered;
     std::span<const ZoneEvent> stayed;
@@ -74,19 +74,17 @@ struct ZoneEvents {
     std::span<const ZoneEvent> left;
 };
 
-/// Says whether a proxy counts in a zone. Asked only about proxies in the zone, on all threads. A proxy that
-/// it accepted before and refuses now has left the zone.
+/// Returns whether a proxy counts in a zone. Asked only about proxies in the zone. A proxy that it accepted before
+/// and refuses now leaves the zone.
 using ZoneFilter = FunctionRef<bool(ZoneId, ProxyId)>;
 
-/// The filter that accepts every proxy.
 [[nodiscard]] inline bool acceptAllInZones(ZoneId /*zone*/, ProxyId /*proxy*/) noexcept {
     return true;
 }
 
-/// Says whether an update looks into a zone.
+/// Returns whether an update searches a zone.
 using ZoneChoice = FunctionRef<bool(ZoneId)>;
 
-/// The choice of every zone.
 [[nodiscard]] inline bool allZones(ZoneId /*zone*/) noexcept {
     return true;
 }
@@ -97,43 +95,40 @@ class HASHPHASE_AI_TEMPLATE_EXPORT Zones {
 public:
     // --- Zones -----------------------------------------------------------------------------------
 
-    /// Adds a zone, empty until the next update. Cost: O(1) amortised.
+    /// Adds a zone, empty until the next update(). Returns its id. Cost: O(1) amortised.
     [[nodiscard]] ZoneId add(const Zone<Scalar>& zone);
 
-    /// Moves, resizes or reshapes a zone; the next update sees it. Cost: O(1).
+    /// Moves, resizes or reshapes a zone, for the next update(). Cost: O(1).
     void set(ZoneId id, const Zone<Scalar>& zone);
 
-    /// Removes a zone; its id is never valid again. Its occupants leave in the next update. Cost:
-    /// O(occupants).
+    /// Removes a zone. Its id is never valid again. Its occupants leave in the next update(). Cost: O(occupants).
     void remove(ZoneId id);
 
     [[nodiscard]] bool contains(ZoneId id) const noexcept;
     [[nodiscard]] const Zone<Scalar>& zone(ZoneId id) const;
     [[nodiscard]] std::size_t size() const noexcept { return slots_.size() - freeSlots_.size(); }
 
-    /// Empties all zones without events, before another grid replaces this one.
+    /// Empties all zones without events. Call it before another grid replaces this one.
     void forgetOccupants() noexcept;
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Finds which proxies are in each zone now, and returns what has changed since the last update. Valid
-    /// until the next update. The result does not depend on `parallelFor`. `due` is asked once for each zone.
-    /// A zone that it leaves out keeps its occupants, removed ones included, and has no events: the next
-    /// update that looks into the zone tells all that has changed since. Cost: a query for each zone that is
-    /// due, at most one test for each zone and proxy (Grid::visit()), and the sum of the occupants.
+    /// Finds the proxies in each zone. Returns the changes since the last update(), valid until the next. `due` is
+    /// asked once about each zone. A refused zone keeps its occupants, removed ones included, and has no events; its
+    /// next search reports all changes since. Cost: Grid::visit() of each due zone, and the sum of the occupants.
     ZoneEvents update(const Grid<Scalar>& grid, ZoneFilter filter = acceptAllInZones,
                       ZoneChoice due = allZones, ParallelFor parallelFor = serialFor);
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// The proxies in the zone at the last update, sorted by id. Valid until the next update.
+    /// The zone's proxies at the last update(), sorted by id. Valid until the next update().
     [[nodiscard]] std::span<const ProxyId> occupants(ZoneId id) const;
 
-    /// Finds the zones that hold the point [m] now. Replaces what `found` held; sorted by id. Finds none when
-    /// the point is not finite. Cost: O(zones).
+    /// Finds the zones that contain the point [m] now. Replaces `found`, sorted by id; empty if the point is not
+    /// finite. Cost: O(zones).
     void zonesAt(const Vector3<Scalar>& point, std::vector<ZoneId>& found) const;
 
-    /// What the last update() cost; hits are boxes found, before presence and filter count.
+    /// Cost of the last update(). Hits are boxes found, before presence and filter.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
 
     /// Bytes held, capacity included. Cost: O(zones).

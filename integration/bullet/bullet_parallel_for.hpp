@@ -2,12 +2,11 @@
 #pragma once
 
 // Runs the loops of the broadphase on the threads of Bullet's task scheduler: see btSetTaskScheduler().
-// Without a scheduler they run on the caller's thread. A Bullet built without threads (BT_THREADSAFE) has none
-// to offer, but takes a scheduler of the program's own.
 //
-// Keep what btCreateDefaultTaskScheduler() gave until the program ends. Its destructor at times writes a zero before
-// an array of its own, where there may be anything of the program's: btThreadSupportPosix::waitForResponse() takes
-// the end of a thread's earlier work for that of its present one, and then finds no thread that has ended.
+// Scheduler Without one, loops run on the caller's thread. A Bullet without threads (BT_THREADSAFE) has none, but
+//           takes your own.
+// Lifetime  Keep the result of btCreateDefaultTaskScheduler() until the program ends: its destructor may overwrite
+//           memory of the program (a fault in btThreadSupportPosix::waitForResponse()).
 
 #include <broadphase/core/first_exception.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -22,8 +21,8 @@
 
 namespace hashphase {
 
-/// A ParallelFor: config.parallelFor = hashphase::bulletFor. What a thread of Bullet's throws, as std::bad_alloc,
-/// is thrown on the caller's when all have ended.
+/// A ParallelFor: config.parallelFor = hashphase::bulletFor. Throws on the caller's thread, after all threads have
+/// ended, the first exception of the loop, such as std::bad_alloc.
 inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
     struct Body : btIParallelForBody {
         const LoopBody& loop;
@@ -44,7 +43,7 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
         body(0, count);
     } else {
         detail::FirstException exception;
-        // btParallelFor() is for a Bullet with threads alone.
+        // btParallelFor() needs a Bullet with threads.
         scheduler->parallelFor(0, static_cast<int>(count),
                                static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)),
                                Body(body, exception));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Conversions between Bullet's vectors and the grid's. No rounding: both sides use btScalar. NaN and infinite
-// coordinates stay what they are.
+// Conversions between Bullet's vectors and the grid's, without rounding: both use btScalar. NaN and infinite
+// coordinates stay as they are.
 //
 //     const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
 //     broadphase.grid().visit(BoxRegion<btScalar>{box}, collector);
@@ -14,24 +14,24 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// The three coordinates; Bullet's fourth number is dropped.
+/// Returns the three coordinates, without Bullet's fourth number.
 [[nodiscard]] inline Vector3<btScalar> toEigen(const btVector3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-/// The three coordinates; Bullet's fourth number is 0.
+/// Returns the three coordinates; Bullet's fourth number is 0.
 [[nodiscard]] inline btVector3 toBullet(const Vector3<btScalar>& v) {
     return {v.x(), v.y(), v.z()};
 }
 
 using hashphase::isSameBits;
 
-/// True when the three coordinates are equal to the bit: -0 differs from 0, and a NaN equals itself.
+/// Returns whether all three coordinates have equal bits: -0 differs from 0, and a NaN equals itself.
 [[nodiscard]] inline bool isSameBits(const btVector3& a, const btVector3& b) {
     return isSameBits(a.x(), b.x()) && isSameBits(a.y(), b.y()) && isSameBits(a.z(), b.z());
 }
 
-/// The box between two corners, taken as they are: where min > max, the box is inverted.
+/// Returns the box between two corners as they are: inverted if min > max.
 [[nodiscard]] inline Aabb<btScalar> toAabb(const btVector3& min, const btVector3& max) {
     return {toEigen(min), toEigen(max)};
 }

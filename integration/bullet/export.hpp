@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What the shared libraries hashphase_bullet and hashphase_bullet_float64 offer: see
-// broadphase/export.hpp. HASHPHASE_BULLET_IS_STATIC is 1 where these two are static, as Bullet is, among
-// others that are shared.
+// Export macros of the shared libraries hashphase_bullet and hashphase_bullet_float64: see broadphase/export.hpp.
+// HASHPHASE_BULLET_IS_STATIC is 1 if these two are static, like Bullet, and the other libraries are shared.
 
 #include <broadphase/export.hpp>
 

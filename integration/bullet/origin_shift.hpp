@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Moves the origin of a whole Bullet world. Far from the origin numbers are coarse: bodies jitter and
-// joints drift. Shift the origin now and then to keep the world around the player near it; nothing falls
-// apart, wakes up, or loses its contacts.
+// Moves the origin of a whole Bullet world. Far from the origin numbers are coarse: bodies jitter and joints drift.
+// Shift the origin now and then to keep it near the player. Contacts stay, and no body wakes.
 //
-// A frame   Call it between two steps.
-// Choose    shifts by multiples of a power of two, such as 1024 m, towards where the bodies are: they round
-//           nothing there, and leave relative positions as they were, to the bit.
-// Threads   needs the world for itself
-// Memory    Where it runs out, std::bad_alloc is passed on, and nothing is shifted.
-// Misuse    Soft bodies and multibodies keep coordinates that are not known here. A world with such bodies,
-//           and a shift that is not finite, are asserted: then nothing is shifted, and false is returned.
-// RTTI      None is needed for a btDynamicsWorld, or what is derived from it. A btCollisionWorld is asked
-//           whether it is one; where it cannot say (-fno-rtti, MSVC) and has rigid bodies, that is asserted, too.
+// A frame  Call it between two steps.
+// Shift    Use multiples of a power of two, such as 1024 m, towards the bodies. Then nothing is rounded there, and
+//          relative positions stay equal to the bit.
+// Threads  Needs the world for itself.
+// Memory   Throws std::bad_alloc when memory runs out, and shifts nothing.
+// Misuse   Asserted: the broadphase is the world's, the shift is finite, and there are no soft bodies or
+//          multibodies, whose coordinates are not known here. Otherwise returns false and shifts nothing.
+// RTTI     Only a btCollisionWorld needs it, to show whether it is a btDynamicsWorld. Without RTTI (-fno-rtti,
+//          MSVC) it must have no rigid bodies. Asserted, as above.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -24,17 +23,16 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Moves the world's origin to `shift` [m]: subtracts it from the place of every collision object and
-/// its interpolation, from the motion states of bodies, from the points of all contacts, from joints
-/// that hold a body to the world, and from the broadphase's boxes. `broadphase` is the world's (asserted).
-/// Velocities, sleep, contacts and pairs stay. Shift yourself what the program keeps: bodies that are in no
-/// world, zones, cameras, terrains. Every motion state is asked for its place and told the new one, whether
-/// its body moves or not. Returns whether the world was shifted; if not, nothing has changed. Cost: a look at
-/// each object, contact and joint, and SpatialHashBroadphase::shiftOrigin().
+/// Moves the world's origin to `shift` [m]: subtracts it from the transforms of collision objects and their
+/// interpolation, from motion states, contact points, joints between a body and the world, and the broadphase's
+/// boxes. Velocities, sleep, contacts and pairs stay. Reads and sets each motion state, even if its body rests.
+/// Shift all else yourself: bodies outside the world, zones, cameras, terrains.
+/// Returns whether the world was shifted; if not, nothing has changed. Cost: a look at each object, contact and
+/// joint, and SpatialHashBroadphase::shiftOrigin().
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btDynamicsWorld& world,
                                                             SpatialHashBroadphase& broadphase,
                                                             const btVector3& shift);
-/// The same for any world.
+/// Shifts a world of any type: see RTTI above.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btCollisionWorld& world,
                                                             SpatialHashBroadphase& broadphase,
                                                             const btVector3& shift);

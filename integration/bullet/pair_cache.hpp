@@ -1,33 +1,27 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A pair cache for Bullet that finds the pairs of one proxy without looking at all other pairs.
-// Works under any broadphase and in any world:
+// A pair cache for Bullet that removes a body in time proportional to its pairs; Bullet's own cache scans all
+// pairs, twice. Works under any broadphase and in any world:
 //
 //     hashphase::PairCache pairCache;
 //     btDbvtBroadphase broadphase(&pairCache);
 //
-// Bullet's own cache scans every pair, twice, to remove one body. Here a proxy's pairs are chained, and the
-// cost of removing a body follows the number of its pairs. The array of pairs may be kept in an order that
-// depends only on the set of pairs.
-//
-// Threads   needsBroadphaseCollision() and the const members may run anywhere. Everything else
-//           needs the cache for itself, as in Bullet.
-// Pointers  A pair stays where it is until a pair is added or removed, or memory is given back, in
-//           canonical order also until the next look at the whole array. Others must not resize or
-//           reorder the array.
-// Batches   update() and removeOverlappingPairsContainingProxies() do in a pass what single calls do
-//           one by one, at a fraction of the cost.
-// Callbacks of ghosts, of processAllOverlappingPairs(), and of algorithms that are freed see the cache as it
-//           is after the change that they are told of, and may change it. The filter may not. Under a
-//           SpatialHashBroadphase, a pair that is taken out comes back in the next calculation, unless the
-//           filter refuses it.
-// Memory    Where it runs out, std::bad_alloc is passed on: a single call has changed nothing, a batch has
-//           removed some of its pairs or all, and added none. Removing the pairs of one proxy then takes no
-//           memory, but time that follows all pairs. Bullet's own arrays do not report a lack of memory.
-// NULL      A NULL dispatcher frees no algorithms, as in Bullet; NULL clients are fine.
-// Misuse    Asserted are pairs of a proxy with itself, proxies alive with equal or negative unique ids, a
-//           missing key, and a filter that changes the cache.
+// Threads   needsBroadphaseCollision() and const members run anywhere. Everything else needs the cache for itself,
+//           as in Bullet.
+// Pointers  A pair stays in place until a pair is added or removed, or memory is given back; in canonical order
+//           also until the whole array is read next. Do not resize or reorder the array.
+// Callbacks of ghosts, processAllOverlappingPairs() and freed algorithms see the cache after the change, and may
+//           change it. The filter must not.
+// Removal   Under a SpatialHashBroadphase, a removed pair returns in the next calculation, unless the filter
+//           refuses it. In canonical order, its algorithm is freed when the whole array is read next, or pairs of a
+//           proxy are removed or cleaned; otherwise at once.
+// Memory    Throws std::bad_alloc when memory runs out. A single call has then changed nothing; a batch has removed
+//           some or all of its pairs, and added none. Removing the pairs of one proxy takes no memory then, but
+//           scans all pairs. Bullet's own arrays do not report a lack of memory.
+// NULL      A NULL dispatcher frees no algorithms, as in Bullet. Clients may be NULL.
+// Misuse    Asserted: a pair has two different proxies, unique ids of live proxies differ and are not negative, and
+//           the filter does not change the cache.
 
 #include <broadphase/core/flat_set.hpp>
 #include <broadphase/core/key_parts.hpp>
@@ -55,48 +49,44 @@ struct CacheWatcher;
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// In which order the array lists the pairs.
+/// The order of the pairs in the array.
 enum class PairOrder {
-    /// As pairs came and went: equal calls, from an empty cache on, give an equal order, which is that of
-    /// Bullet's cache unless they are batches. The place of a pair depends on the history: boxes that are set
-    /// back to an earlier frame bring back the pairs of that frame, not their places. Costs nothing.
+    /// As pairs came and went: equal after equal calls on an empty cache, and as in Bullet's cache except after
+    /// batches. Boxes that are set back to an earlier frame bring back its pairs, not their places. Cost: none.
     arrival,
-    /// Ascending by the key of the first proxy, then of the second, whenever the whole array is read: equal
-    /// sets of pairs give an equal order, whatever the broadphase and the history. Needed where a program
-    /// sets boxes back itself; WorldSnapshot does without. Algorithms are freed in that order, too, so that
-    /// the dispatcher's manifolds, and with them whole trajectories, are equal under all exact broadphases.
-    /// Costs a sort when the set has changed.
+    /// Ascending by the keys of both proxies, whenever the whole array is read: equal sets of pairs give an equal
+    /// order, under any broadphase. For programs that set boxes back themselves; WorldSnapshot does not need it.
+    /// Frees algorithms in this order too, so manifolds, and whole trajectories, are equal under all exact
+    /// broadphases. Cost: a sort when the set has changed.
     canonical,
 };
 
-/// Returns the number by which proxies are ordered; ties go by m_uniqueId. It must not change while the proxy
-/// has pairs.
+/// Returns the number that orders proxies; m_uniqueId decides ties. It must not change while the proxy has pairs.
 using ProxyKey = int (*)(const btBroadphaseProxy&);
 
-/// Two proxies as a batch names them, with their unique ids, so that the proxies themselves need not be read.
+/// Two proxies with their unique ids, so that a batch need not read the proxies.
 class BulletProxyPair {
 public:
-    /// Names none.
     BulletProxyPair() noexcept = default;
 
     BulletProxyPair(btBroadphaseProxy& a, btBroadphaseProxy& b) noexcept
         : BulletProxyPair(a, a.m_uniqueId, b, b.m_uniqueId) {}
 
-    /// The ids must be those of the proxies; this is not checked.
+    /// Not checked: the ids belong to the proxies.
     BulletProxyPair(btBroadphaseProxy& a, int idOfA, btBroadphaseProxy& b, int idOfB) noexcept
         : lower_(idOfA < idOfB ? &a : &b),
           upper_(idOfA < idOfB ? &b : &a),
           ids_(std::uint64_t{static_cast<std::uint32_t>(idOfA < idOfB ? idOfA : idOfB)} << 32 |
                static_cast<std::uint32_t>(idOfA < idOfB ? idOfB : idOfA)) {}
 
-    /// The proxies with the lower and the higher unique id.
+    /// Returns the proxy with the lower, or the higher, unique id.
     [[nodiscard]] btBroadphaseProxy* lower() const noexcept { return lower_; }
     [[nodiscard]] btBroadphaseProxy* upper() const noexcept { return upper_; }
 
-    /// Both unique ids, the lower one on top.
+    /// Returns both unique ids, the lower one in the upper 32 bits.
     [[nodiscard]] std::uint64_t ids() const noexcept { return ids_; }
 
-    /// False when one of the two has another unique id by now, as after it was destroyed.
+    /// Returns false if one of the two has another unique id now, as after its destruction.
     [[nodiscard]] bool isUpToDate() const noexcept {
         return static_cast<std::uint32_t>(lower_->m_uniqueId) == ids_ >> 32 &&
                static_cast<std::uint32_t>(upper_->m_uniqueId) == (ids_ & 0xffffffffU);
@@ -110,11 +100,11 @@ private:
 
 using ProxyCouple [[deprecated("BulletProxyPair")]] = BulletProxyPair;
 
-/// A btOverlappingPairCache in which the cost of removing a proxy follows the number of its pairs.
+/// A btOverlappingPairCache with fast removal.
 class HASHPHASE_BULLET_EXPORT PairCache final : public btOverlappingPairCache {
 public:
-    /// In both orders, m_pProxy0 of a pair has the lower key. The default key orients pairs as Bullet does;
-    /// another key is for broadphases that re-use unique ids.
+    /// m_pProxy0 of a pair has the lower key. The default key orients pairs as Bullet does; choose another for
+    /// broadphases that reuse unique ids. Asserted: `key` is not null.
     explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId)
         : order_(order), key_(key) {
         HASHPHASE_ASSERT(key != nullptr, "There is a key to order proxies by.");
@@ -124,7 +114,7 @@ public:
     PairCache(const PairCache&) = delete;
     PairCache& operator=(const PairCache&) = delete;
 
-    /// The default key. Not inline: it is known by its address, which is the same in every library.
+    /// The default key. Not inline: it is known by its address.
     static int uniqueId(const btBroadphaseProxy& proxy);
 
     /// The most pairs that Bullet's array can hold.
@@ -132,22 +122,20 @@ public:
 
     // --- One pair --------------------------------------------------------------------------------
 
-    /// Returns the pair of the two proxies; makes it when there is none. NULL when the filter refuses it. The
-    /// ghost callback is told of a new pair. Throws std::length_error, and changes nothing, beyond
-    /// kMostPairs. Cost: O(1).
+    /// Returns the pair of the two proxies, added if missing; NULL if the filter refuses it. Calls the ghost
+    /// callback for a new pair. Throws std::length_error beyond kMostPairs, and changes nothing. Cost: O(1).
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
                                          btBroadphaseProxy* proxy1) override;
 
-    /// addOverlappingPair() without asking the filter, for callers who have asked it.
+    /// As addOverlappingPair(), without asking the filter.
     btBroadphasePair* addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1);
 
-    /// Frees the pair's algorithm, tells the ghost callback and returns the pair's m_internalInfo1;
-    /// NULL when there is no such pair. In canonical order the algorithm is freed when the whole array is
-    /// read next, or the pairs of a proxy are removed or cleaned. Cost: O(1).
+    /// Removes the pair, frees its algorithm and calls the ghost callback. Returns the pair's m_internalInfo1; NULL
+    /// if there is no such pair. Cost: O(1).
     void* removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
                                 btDispatcher* dispatcher) override;
 
-    /// NULL when there is no such pair; does not ask the filter. Cost: O(1).
+    /// Returns the pair, without asking the filter; NULL if there is none. Cost: O(1).
     btBroadphasePair* findPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) override;
 
     /// Frees the pair's algorithm and keeps the pair.
@@ -155,15 +143,13 @@ public:
 
     // --- Many pairs ------------------------------------------------------------------------------
 
-    /// Removes the pairs of `died` as removeOverlappingPair() does, then adds those of `born` as
-    /// addAcceptedPair() does. Passes over died pairs that are missing, and born pairs that are present. The
-    /// order of arrival depends only on the calls: the first born pairs take the places of the first died
-    /// ones, so that no other pair moves; further born pairs go to the end, places that none takes are filled
-    /// from the end. Algorithms are freed when the array is in order again. With a ghost callback, or called
-    /// by a callback of processAllOverlappingPairs(), it does exactly what single calls do. Thousands of pairs
-    /// are looked up on the threads of `parallelFor`, with the same result; callbacks come on the caller's.
-    /// Throws std::length_error, and changes nothing, when the born pairs would make more than kMostPairs.
-    /// Cost: O(1) a pair, a third of that of single calls.
+    /// Removes the pairs `died`, then adds the pairs `born` without asking the filter. Skips died pairs that are
+    /// missing, and born pairs that are present. Order of arrival: the first born pairs take the places of the
+    /// first died ones; further born pairs go to the end, or pairs from the end fill places that are left. With a
+    /// ghost callback, or called within processAllOverlappingPairs(), does exactly what single calls do. Uses
+    /// `parallelFor` for thousands of pairs, with an equal result; callbacks run on the caller's thread. Throws
+    /// std::length_error, and changes nothing, if present and born pairs exceed kMostPairs. Cost: O(1) a pair, a
+    /// third of single calls.
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                 btDispatcher* dispatcher, ParallelFor parallelFor);
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
@@ -171,67 +157,66 @@ public:
 
     // --- The pairs of one proxy ------------------------------------------------------------------
 
-    /// Removes the proxy's pairs one by one as removeOverlappingPair() does, in canonical order or in that
-    /// of Bullet's cache. Cost: the number of the proxy's pairs, and O(1), amortised, for every pair added or
-    /// sorted since the last such call, and for every pair from before an update() that changed many pairs.
+    /// Removes the proxy's pairs one by one as removeOverlappingPair() does, in canonical order or in the order of
+    /// Bullet's cache. Cost: the proxy's pairs, and O(1), amortised, for each pair added since the last such call;
+    /// after a sort or a large update() for each pair.
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
-    /// Frees the algorithms of the proxy's pairs and keeps the pairs, in the order and at the cost of
-    /// removing them. Ghosts that keep algorithms of their own are told nothing.
+    /// Frees the algorithms of the proxy's pairs and keeps the pairs. Order and cost: as for removal. Ghosts keep
+    /// their own algorithms.
     void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// As cleanProxyFromPairs(), and tells the ghost callback that each pair has ended and begun, as if it
-    /// had been removed and added: this frees what ghosts keep of the pair, too.
+    /// As cleanProxyFromPairs(), and calls the ghost callback as if each pair had been removed and added, so that
+    /// ghosts free their algorithms too.
     void renewPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     // --- The pairs of many proxies ---------------------------------------------------------------
 
-    /// Removes the pairs of each proxy in turn. The order of arrival differs from that of single calls.
-    /// Algorithms are freed when all pairs are gone: in canonical order as by single calls, else in an
-    /// unspecified order. With a ghost callback, or called by a callback of processAllOverlappingPairs(), it
-    /// does exactly what single calls do. Cost: the number of the proxies' pairs, and at most one pass over
-    /// all pairs.
+    /// Removes the pairs of each proxy in turn, and then frees algorithms: in canonical order as single calls do,
+    /// otherwise in any order. The order of arrival differs from single calls. With a ghost callback, or called
+    /// within processAllOverlappingPairs(), does exactly what single calls do. Cost: the proxies' pairs, and at
+    /// most one pass over all pairs.
     void removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                  btDispatcher* dispatcher);
 
     // --- All pairs -------------------------------------------------------------------------------
 
     /// Calls callback->processOverlap() for every pair, and removes the pairs for which it returns true. The
-    /// callback may add pairs, which it will be shown too, and remove any pair; where it removes others than
-    /// the one it is shown, some may not be shown this time. Cost: O(pairs), including pairs that the
-    /// callback adds: the call ends when the callback adds no more.
+    /// callback may add pairs, which it is shown too, and remove any pair. If it removes others than the shown one,
+    /// some may be skipped this time. Cost: O(pairs), with added ones: the call ends when the callback adds no
+    /// more.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) override;
 
-    /// As above, but with dispatchInfo.m_deterministicOverlappingPairs in the order of unique ids, the
-    /// highest first, as Bullet's cache; pairs added meanwhile wait for the next call.
+    /// As above. With dispatchInfo.m_deterministicOverlappingPairs, by descending unique ids, as Bullet's cache;
+    /// added pairs then wait for the next call.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
                                     const btDispatcherInfo& dispatchInfo) override;
 
     [[nodiscard]] int getNumOverlappingPairs() const override { return pairs_.size(); }
 
-    /// The array, with PairOrder::canonical in that order, but not during processAllOverlappingPairs():
-    /// changes made by its callback are sorted in afterwards.
+    /// Returns the array, in canonical order if chosen. Within processAllOverlappingPairs(), changes by its
+    /// callback are sorted in afterwards.
     btBroadphasePair* getOverlappingPairArrayPtr() override;
     btBroadphasePairArray& getOverlappingPairArray() override;
 
-    /// The array as it stands: changes since the last call of the non-const ones are not sorted in.
+    /// Returns the array as it is, with changes since the last non-const call not sorted in.
     [[nodiscard]] const btBroadphasePair* getOverlappingPairArrayPtr() const override;
 
-    /// Brings the array into canonical order, once, with either PairOrder. Bullet's caches remove and add all
-    /// pairs for that, which destroys every algorithm; here algorithms stay and ghosts are told nothing.
+    /// Brings the array into canonical order once, with either PairOrder. Unlike Bullet's caches, keeps algorithms
+    /// and calls no ghost callback.
     void sortOverlappingPairs(btDispatcher* dispatcher) override;
 
-    /// False: removal is immediate.
+    /// Returns false: removal is immediate.
     bool hasDeferredRemoval() override { return false; }
 
     // --- Callbacks -------------------------------------------------------------------------------
 
-    /// Asks the filter callback; without one, groups and masks decide, both ways. False of two that the
-    /// broadphase ignores, or that are in different worlds of a WorldsBroadphase.
+    /// Asks the filter callback; without one, groups and masks decide, both ways. Returns false for two proxies
+    /// that the broadphase ignores, or of different worlds of a WorldsBroadphase.
     [[nodiscard]] bool needsBroadphaseCollision(btBroadphaseProxy* proxy0,
                                                 btBroadphaseProxy* proxy1) const override;
-    /// The same, whatever the broadphase says of the two.
+    /// As needsBroadphaseCollision(), but asks neither for ignored pairs nor for worlds.
     [[nodiscard]] bool doFiltersAccept(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) const {
         if (filter_ != nullptr) {
             const detail::QueryScope scope(this);
@@ -239,22 +224,21 @@ public:
         }
         return doGroupsAccept(*proxy0, *proxy1);
     }
-    /// Whether the two may pair by their groups and masks, both ways.
+    /// Returns whether groups and masks accept the two, both ways.
     [[nodiscard]] static bool doGroupsAccept(const btBroadphaseProxy& a,
                                              const btBroadphaseProxy& b) noexcept {
         return (a.m_collisionFilterGroup & b.m_collisionFilterMask) != 0 &&
                (b.m_collisionFilterGroup & a.m_collisionFilterMask) != 0;
     }
-    /// The callback that was set. Where the broadphase may say that two are no pair, and none was set, one that
-    /// asks groups and masks: Bullet's casts of fast bodies call needsBroadphaseCollision() only if there is one.
+    /// Returns the filter callback. If none is set, but the broadphase may refuse pairs, returns one that asks
+    /// groups and masks: Bullet's casts of fast bodies call needsBroadphaseCollision() only if there is one.
     btOverlapFilterCallback* getOverlapFilterCallback() override;
-    /// NULL for none.
+    /// Sets the callback; NULL for none.
     void setOverlapFilterCallback(btOverlapFilterCallback* callback) override;
-    /// Whether one was set.
     [[nodiscard]] bool hasFilterCallback() const noexcept { return filter_ != nullptr; }
 
-    /// Sets the callback that is told of each pair added and each pair removed, once; NULL for none. As in
-    /// Bullet's caches, it is not told of the present pairs.
+    /// Sets the callback that is called once for each added and each removed pair; NULL for none. As in Bullet's
+    /// caches, not for present pairs.
     void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
         ghosts_ = callback;
     }
@@ -264,22 +248,20 @@ public:
 
     // --- Beyond Bullet ---------------------------------------------------------------------------
 
-    /// Number of pairs for which there is room.
     [[nodiscard]] std::size_t capacity() const noexcept {
         return static_cast<std::size_t>(pairs_.capacity());
     }
 
-    /// Number of pairs read so far to serve single proxies: the work of
-    /// removeOverlappingPairsContainingProxy() and cleanProxyFromPairs().
+    /// Returns how many pairs were listed so far to remove or clean the pairs of proxies.
     [[nodiscard]] std::uint64_t pairsVisited() const noexcept { return pairsVisited_; }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back room for more pairs than there are. Pairs move, as where one is added. A
-    /// SpatialHashBroadphase calls it by itself. Not within the filter (asserted). Cost: O(pairs).
+    /// Gives back unused memory; pairs move. A SpatialHashBroadphase calls it by itself. Asserted: not within the
+    /// filter. Cost: O(pairs).
     void releaseUnusedMemory() noexcept;
 
-    /// Says which invariant is broken, in a sentence; empty when all hold:
+    /// Returns the broken invariant in a sentence; empty if all hold:
     /// - Every pair is found by the unique ids of its proxies.
     /// - Every pair has the proxy with the lower key first.
     /// - Every chained pair is chained once to each of its proxies.
@@ -288,31 +270,30 @@ public:
 
     // --- For a broadphase ------------------------------------------------------------------------
 
-    /// Which side removes a pair: a broadphase needs to know which pairs others take out.
+    /// Which side removes a pair: a broadphase must know which pairs others take out.
     enum class Remover { broadphase, other };
 
-    /// removeOverlappingPairsContainingProxies(), by that remover.
+    /// removeOverlappingPairsContainingProxies(), by this remover.
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
                        Remover remover);
 
-    /// Who is told of pairs that others take out; null for nobody.
+    /// The object that hears of pairs that others take out; null for none.
     [[nodiscard]] detail::CacheWatcher* watcher() const noexcept { return watcher_; }
     void setWatcher(detail::CacheWatcher* watcher) noexcept { watcher_ = watcher; }
 
 private:
-    // A pair has two edges: 2 * its index for the proxy with the lower unique id, and that + 1. The
-    // edges of a proxy are chained, those of the first so many pairs, that is.
+    // A pair has two edges, chained by proxy: 2 * its index for the lower unique id, and that + 1.
     struct Link {
         std::uint32_t next;
         std::uint32_t previous;
     };
 
-    // A pair as it was noted down, with what it is to be sorted by.
+    // The sort keys of a pair.
     struct PairSortKey {
         std::uint64_t keys;  // of first and second proxy, ascending as unsigned
         std::uint64_t uniqueIds;
         std::uint32_t index;
-        std::uint32_t rank = 0;  // of the first of its proxies among those of a batch
+        std::uint32_t rank = 0;  // of its first proxy within a batch
 
         friend bool operator<(const PairSortKey& a, const PairSortKey& b) noexcept {
             return a.keys != b.keys ? a.keys < b.keys : a.uniqueIds < b.uniqueIds;
@@ -415,9 +396,9 @@ private:
 
     btBroadphasePairArray pairs_;
     detail::FlatSet ids_;           // of each pair, by its index: both unique ids, lower one on top
-    std::vector<Link> links_;       // by edge; the pairs behind its end are not chained yet
+    std::vector<Link> links_;       // by edge
     detail::RunMap firstEdge_;      // unique id -> first edge of the proxy's chain
-    std::size_t pairsScanned_ = 0;  // in place of chaining them, since some were last chained
+    std::size_t pairsScanned_ = 0;  // instead of chaining, since the last chaining
     std::uint64_t pairsVisited_ = 0;
     bool isSorted_ = true;
     int processDepth_ = 0;  // processAllOverlappingPairs() calls under way
@@ -426,13 +407,13 @@ private:
 
     detail::CacheWatcher* watcher_ = nullptr;
 
-    std::vector<std::uint32_t> places_;  // scratch of batches, vacant ones; and of sort(), new ones
+    std::vector<std::uint32_t> places_;        // scratch: vacant in batches, new in sort()
     std::unique_ptr<detail::KeyParts> parts_;  // scratch of batches on threads
     detail::ProxyRanks ranks_;                 // scratch of removals
     std::vector<PairSortKey> scratch_;
 };
 
-// Not by Bullet's constructor for two proxies: that one orients by unique id.
+// Bullet's constructor for two proxies orients by unique id.
 inline void PairCache::name(const BulletProxyPair& proxies, btBroadphasePair& pair) const {
     HASHPHASE_ASSERT(proxies.ids() >> 32 != (proxies.ids() & kLowerHalf),
                      "A pair is made of two proxies with different unique ids.");

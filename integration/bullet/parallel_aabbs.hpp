@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A Bullet world that computes the boxes of its objects on several threads. In place of
+// A Bullet world that computes the boxes of its objects on several threads. Instead of
 //
 //     btDiscreteDynamicsWorldMt world(&dispatcher, &broadphase, solvers, nullptr, &configuration);
 //
@@ -10,12 +10,11 @@
 //     hashphase::ParallelAabbs<btDiscreteDynamicsWorldMt> world(&dispatcher, &broadphase, solvers, nullptr,
 //                                                               &configuration);
 //
-// Threads   Those of the broadphase: SpatialHashConfig::parallelFor. Without it, and with any other
-//           broadphase, the world does what World does.
-// Shapes    Their getAabb() is called on several threads at the same time, for one shape as well. The shapes
-//           of Bullet allow that.
-// Callbacks All boxes are computed before the first one is set: what a callback of the pair cache does to an
-//           object counts from the next step on.
+// Threads   SpatialHashConfig::parallelFor of the broadphase. Without it, or with any other broadphase, the world
+//           does what World does.
+// Shapes    Their getAabb() runs on several threads at once, also for one shape. Bullet's shapes allow this.
+// Callbacks All boxes are computed before the first is set. If a callback of the pair cache changes an object, this
+//           counts from the next step on.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -33,15 +32,14 @@ namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
 /// The boxes of a world's objects, as btCollisionWorld::updateSingleAabb() computes them.
 class WorldAabbs {
 public:
-    /// Does what btCollisionWorld::updateAabbs() does. Returns false, and has done nothing, where it is not
-    /// to be done on several threads.
+    /// As btCollisionWorld::updateAabbs(). Returns false, and does nothing, if it must not use several threads.
     [[nodiscard]] HASHPHASE_BULLET_EXPORT bool update(btCollisionWorld& world);
 
 private:
     void compute(btCollisionWorld& world, int number);
     void dropSkipped(btCollisionWorld& world);
 
-    std::vector<btBroadphaseProxy*> proxies_;  // of each object; null where its box is not set
+    std::vector<btBroadphaseProxy*> proxies_;  // of each object; null if its box is not set
     std::vector<btVector3> mins_;
     std::vector<btVector3> maxs_;
 };
@@ -51,8 +49,8 @@ private:
 inline namespace HASHPHASE_BULLET_NAMESPACE {
 
 /// A World (btCollisionWorld, btDiscreteDynamicsWorld, btDiscreteDynamicsWorldMt, btSoftRigidDynamicsWorld,
-/// btMultiBodyDynamicsWorld, or your own over one of these) with its constructors and all its results, whose
-/// updateAabbs() hands all boxes over in one SpatialHashBroadphase::setAabbs().
+/// btMultiBodyDynamicsWorld, or your own class over one of these) with its constructors and results. updateAabbs()
+/// passes all boxes to one SpatialHashBroadphase::setAabbs().
 template <class World>
 class ParallelAabbs : public World {
     static_assert(std::is_base_of_v<btCollisionWorld, World>, "World is a world of Bullet.");
@@ -62,10 +60,10 @@ class ParallelAabbs : public World {
 public:
     using World::World;
 
-    /// Sets the box of each object, or with setForceUpdateAllAabbs(false) of each that is active, as World
-    /// does: with Bullet's contact margin, around the predicted way with m_useContinuous, and where a box is
-    /// too large the object is taken out of the simulation, with Bullet's warning. Cost: a box of its shape for
-    /// each object, and that of setAabbs(); 40 bytes an object (72 in double precision).
+    /// Sets the box of each object, or with setForceUpdateAllAabbs(false) of each active one, as World does: with
+    /// Bullet's contact margin, and with m_useContinuous around the predicted way. An object with too large a box
+    /// leaves the simulation, with Bullet's warning. Cost: a box for each object, and setAabbs(); 40 bytes an
+    /// object (72 in double precision).
     void updateAabbs() override {
         if (!aabbs_.update(*this)) {
             World::updateAabbs();

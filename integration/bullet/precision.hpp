@@ -5,9 +5,8 @@
 //
 //     namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE { ... }
 //
-// so that its symbols say which precision it was compiled for. A program compiled for one precision
-// does not link with the library of the other, where Bullet itself would link and go wrong.
-// BT_USE_DOUBLE_PRECISION decides, as it does for Bullet; it has to be set for the whole program.
+// so that its symbols name the precision. Mixing precisions is a link error; Bullet alone would link and go wrong.
+// Set BT_USE_DOUBLE_PRECISION for the whole program, as for Bullet.
 
 #ifdef BT_USE_DOUBLE_PRECISION
 #define HASHPHASE_BULLET_NAMESPACE f64

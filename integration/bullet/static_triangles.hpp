@@ -20,16 +20,15 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Appends the triangles of a shape that stands at `transform` to `corners`, in world coordinates [m], three
-/// corners each. They come in Bullet's order, which is not the mesh's; corners that triangles share stay
-/// equal to the bit.
+/// Appends the triangles of a shape at `transform` to `corners`: three corners each, in world coordinates [m]. They
+/// come in Bullet's order, which is not the mesh's. Corners that triangles share stay equal to the bit.
 ///
-/// Shapes    btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btHeightfieldTerrainShape, any other
-///           btConcaveShape that lists its triangles, and compounds of these
-/// Returns   an empty string, or a sentence that says what is wrong; then nothing was appended. Wrong are a
-///           shape or child without triangles (a plane, a convex shape, a heightfield with a negative
-///           scaling), and compounds more than 64 deep within each other, or within themselves.
-/// Cost      O(triangles), and the children of compounds, each as often as it is contained
+/// Shapes: btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btHeightfieldTerrainShape, any other
+/// btConcaveShape that lists its triangles, and compounds of these.
+/// Returns an empty string, or a sentence about the fault; then nothing is appended. Faults: a shape or child
+/// without triangles (a plane, a convex shape, a heightfield with a negative scaling), and compounds more than 64
+/// deep within each other, or within themselves.
+/// Cost: O(triangles), and the children of compounds, each as often as it is contained.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string appendTriangles(
     const btCollisionShape& shape, const btTransform& transform,
     std::vector<Vector3<btScalar>>& corners);

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A camera and the window that it draws to: from pixels to rays and rectangles.
+// A camera and its viewport: from pixels to rays and rectangles.
 //
 //     const Camera<float> camera(viewProjection, DepthRange::zeroToOne, Viewport(0, 0, 1920, 1080));
 //     const Picked<float> picked = pickNearest(grid, camera.rayThrough({mouseX + 0.5, mouseY + 0.5}));
 //
-// Cameras   All cameras of frustum.hpp: perspective, orthographic, oblique, with a reversed depth range or an
-//           infinite far plane. Computed in double precision, and rounded once at the end.
-// Pixels    x to the right and y downwards, as in windows. Fractions count: the middle of the pixel in
-//           column i and row k is (i + 0.5, k + 0.5).
+// Cameras   All cameras of frustum.hpp. Computed in double precision, and rounded once at the end.
+// Pixels    The middle of the pixel in column i and row k is (i + 0.5, k + 0.5).
 // Units     metres in the world
-// Bad data  A camera whose matrix has no inverse, or whose viewport has no size, sees nothing: its rays and
-//           rectangles are empty, and cameraError() says why. So are those of a pixel that is NaN.
-// Threads   values; use them from any thread
+// Bad data  Rays and rectangles are empty if the matrix has no inverse, the viewport has no size, or a pixel is NaN.
+//           cameraError() returns the camera's fault.
+// Threads   Values: use them on any thread.
 
 #include <broadphase/regions.hpp>
 #include <integration/camera/detail/camera_inverse.hpp>
@@ -39,7 +37,7 @@ struct Viewport {
 
     constexpr Viewport() = default;
 
-    /// Takes numbers of any type: window systems give sizes as integers.
+    /// Takes numbers of any type, such as the integers of window systems.
     template <class X, class Y, class Width, class Height>
         requires(std::is_arithmetic_v<X>&& std::is_arithmetic_v<Y>&& std::is_arithmetic_v<Width>&&
                      std::is_arithmetic_v<Height>)
@@ -50,8 +48,8 @@ struct Viewport {
           height(static_cast<double>(rows)) {}
 };
 
-/// Whether the near plane has the lowest depth (nearFirst) or the highest one (reversed). Matters for
-/// orthographic cameras only; all other matrices show it themselves.
+/// Whether the near plane has the lowest depth (nearFirst) or the highest (reversed). Matters for orthographic
+/// cameras only.
 enum class DepthOrder : std::uint8_t { nearFirst, reversed };
 
 namespace detail {
@@ -62,40 +60,39 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Says in a sentence why nothing can be seen or picked through the matrix, 4 x 4, in the viewport: not
-/// finite, singular, or a viewport without a size. Empty when something may be seen.
+/// Returns in a sentence why nothing can be seen through the 4 x 4 matrix and the viewport: not finite, singular, or
+/// a viewport without a size. Empty if there is no fault.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string cameraError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport) {
     return detail::cameraError<Scalar>(viewProjection, viewport);
 }
 
-/// A camera and the part of the window that it draws to.
+/// A camera and its viewport.
 template <class Scalar>
 class HASHPHASE_CAMERA_TEMPLATE_EXPORT Camera {
 public:
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 
-    /// `viewProjection` is 4 x 4, from world to clip coordinates (frustum.hpp). Bad data makes a camera that
-    /// is not valid; nothing is thrown. Cost: inverts the matrix, once.
+    /// Takes a 4 x 4 matrix from world to clip coordinates (frustum.hpp). Bad data makes an invalid camera, without a
+    /// throw. Cost: one inversion of the matrix.
     template <class Derived>
     Camera(const Eigen::MatrixBase<Derived>& viewProjection, DepthRange depthRange,
            const Viewport& viewport, DepthOrder depthOrder = DepthOrder::nearFirst)
         : Camera(Unaligned{viewProjection}, depthRange, viewport, depthOrder) {}
 
-    /// False when cameraError() is not empty.
+    /// Returns false if cameraError() is not empty.
     [[nodiscard]] bool isValid() const noexcept { return isValid_; }
 
-    /// Returns the ray that is seen at a pixel, in the viewport or beside it. It leads from the near plane to
-    /// the far plane, but no farther than `farthest` [m] behind the near plane, as measured along the
-    /// camera's view; the ray of an orthographic camera always ends on the far plane. Empty
-    /// (RayRegion::isEmpty()) where nothing is seen, or `farthest` is not positive.
+    /// Returns the ray at a pixel, inside or outside the viewport, from the near plane to the far plane. It ends at
+    /// most `farthest` [m] behind the near plane, measured along the view; an orthographic ray always ends on the far
+    /// plane. Empty (RayRegion::isEmpty()) if nothing is seen there, or `farthest` is not positive.
     [[nodiscard]] RayRegion<Scalar> rayThrough(const Pixel& pixel,
                                                double farthest = kFarthestView) const;
 
-    /// Returns the part of the rectangle between two corners, in any order, that lies in the viewport, in
-    /// normalised device coordinates. It may have no area. isEmpty() when no part lies in the viewport.
-    // A template, as viewProjection() is, so that the library has no result that is aligned by its options.
+    /// Returns the part in the viewport of the rectangle between two corners, in any order, in normalised device
+    /// coordinates. It may have no area. isEmpty() if no part is in the viewport.
+    // A template, like viewProjection(), because Eigen aligns results by the program's options.
     template <class Rectangle = ScreenRectangle<Scalar>>
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Rectangle rectangleBetween(const Pixel& a,
                                                                       const Pixel& b) const {
@@ -107,7 +104,7 @@ public:
     /// rectangleBetween() as left, bottom, right and top.
     [[nodiscard]] detail::ScreenEdges<Scalar> edgesBetween(const Pixel& a, const Pixel& b) const;
 
-    /// As given.
+    /// The matrix, as given.
     template <class Result = Matrix>
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Result viewProjection() const noexcept {
         return viewProjection_;

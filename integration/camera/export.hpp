@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What the shared library hashphase_camera offers: see broadphase/export.hpp.
+// Export macros of the library hashphase_camera: see broadphase/export.hpp.
 
 #include <broadphase/export.hpp>
 

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What a camera sees, as a convex region.
+// The view of a camera as a convex region.
 //
-// Matrices  any view-projection matrix that maps world coordinates (columns: x, y, z, 1) to clip
-//           coordinates: perspective or orthographic, oblique, with a reversed depth range or an infinite far
-//           plane. The camera sees the points with -w <= x <= w, -w <= y <= w, and z by DepthRange.
-//           A matrix of OpenGL, GLM or Vulkan, column by column from `const float* matrix`, is
-//           Eigen::Map<const Eigen::Matrix4f>(matrix), as an argument of frustumRegion<float>().
-// Units     metres in the world; normalised device coordinates from -1 to 1 on the screen.
-// Bad data  A matrix that is NaN or infinite sees nothing; frustumError() says why. A singular matrix sees
-//           what its planes enclose: a line of sight, a sheet, nothing. A transposed matrix is that of some
-//           other camera; no check can find this.
+// Matrices  Any view-projection matrix from world coordinates (columns: x, y, z, 1) to clip coordinates: perspective,
+//           orthographic or oblique, with a reversed depth range or an infinite far plane. Seen points have
+//           -w <= x <= w, -w <= y <= w, and z by DepthRange. For a column-major `const float* matrix` (OpenGL, GLM,
+//           Vulkan), pass Eigen::Map<const Eigen::Matrix4f>(matrix) to frustumRegion<float>().
+// Units     metres in the world; normalised device coordinates from -1 to 1 on the screen
+// Bad data  A matrix with a NaN or infinity sees nothing; frustumError() returns the reason. A singular matrix sees
+//           the set that its planes enclose: a line, a sheet or nothing. A transposed matrix is another valid camera.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/convex_region.hpp>
@@ -28,11 +26,11 @@
 
 namespace hashphase {
 
-/// The depths of clip space: z from -w to w (minusOneToOne: OpenGL), or from 0 to w (zeroToOne: Direct3D,
-/// Vulkan, Metal; also with a reversed depth range).
+/// Depths of clip space: z from -w to w (minusOneToOne: OpenGL), or from 0 to w (zeroToOne: Direct3D, Vulkan, Metal;
+/// also if reversed).
 enum class DepthRange : std::uint8_t { minusOneToOne, zeroToOne };
 
-/// Part of the screen in normalised device coordinates: x to the right, y upwards, from -1 to 1.
+/// A part of the screen in normalised device coordinates: x to the right, y upwards, from -1 to 1.
 template <class Scalar>
 using ScreenRectangle = Eigen::AlignedBox<Scalar, 2>;
 
@@ -49,8 +47,8 @@ namespace detail {
 template <class Scalar>
 using ScreenEdges = std::array<Scalar, 4>;
 
-// What is handed to the libraries does not depend on how Eigen aligns a matrix and a rectangle of the
-// program's (core/unaligned.hpp); these are therefore compiled with the program, wherever they are called.
+// Compiled with the program: what the libraries get does not depend on how the program's Eigen aligns
+// (core/unaligned.hpp).
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline ScreenEdges<Scalar> edgesOf(
     const ScreenRectangle<Scalar>& rectangle) {
@@ -67,9 +65,8 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Says in a sentence why nothing can be seen through the matrix, 4 x 4, or through that part of the screen;
-/// empty when something may be seen. It cannot tell a wrong matrix. To check yours, take a point that the
-/// camera is known to see: `viewProjection * (x, y, z, 1)` has -w <= x <= w and -w <= y <= w.
+/// Returns in a sentence why nothing can be seen through the 4 x 4 matrix or that part of the screen; empty if there
+/// is no fault. It cannot find a wrong matrix: test a point that must be visible.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string frustumError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
@@ -77,10 +74,10 @@ template <class Scalar>
     return detail::frustumError<Scalar>(viewProjection, detail::edgesOf<Scalar>(rectangle));
 }
 
-/// Returns the planes left, right, bottom, top, near and far of the view through the matrix, 4 x 4, in a
-/// rectangle of the screen. All face inwards and are not normalised. With a reversed depth range near and far
-/// change places; an infinite far plane has every point inside. After Gribb and Hartmann, "Fast Extraction of
-/// Viewing Frustum Planes from the World-View-Projection Matrix" (2001).
+/// Returns the planes left, right, bottom, top, near and far of the view through the 4 x 4 matrix, in a rectangle of
+/// the screen. They face inwards and are not normalised. A reversed depth range exchanges near and far. An infinite
+/// far plane has every point inside. Source: Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes from the
+/// World-View-Projection Matrix" (2001).
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::array<Eigen::Hyperplane<Scalar, 3>, 6>
 frustumPlanes(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
@@ -92,7 +89,7 @@ frustumPlanes(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange dept
             Plane(planes[3]), Plane(planes[4]), Plane(planes[5])};
 }
 
-/// Returns the view as a region: frustumPlanes() as a ConvexRegion. Cost: some microseconds.
+/// Returns the view as a region, from frustumPlanes(). Cost: some microseconds.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline ConvexRegion<Scalar> frustumRegion(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What a camera sees of the ground: the shadow that a rectangle of the screen casts on a map.
+// The part of the ground that a camera sees: the footprint of a screen rectangle on a map.
 //
-// Footprint  The part of the view (frustum.hpp) between two heights, projected along the up axis: a
-//            convex polygon. It contains the view's cuts with both heights and all that lies between, so
-//            that every object which the view touches between the heights stands on it. With equal heights
-//            it is the view's cut with that plane. Under perspective, or with a turned camera, this is a
-//            general quadrilateral, which two corners do not give; it has fewer or more corners where the
-//            near or the far plane cuts it.
-// Horizon    Rays that never come down to the ground end on the far plane, or `farthest` behind the near
-//            plane if that is nearer: there the footprint is cut off. The rays of an orthographic camera
-//            always end on the far plane.
+// Footprint  The part of the view (frustum.hpp) between two heights, projected along the up axis: a convex polygon.
+//            Every object that the view touches between the heights stands on it. With equal heights it is the view's
+//            cut with that plane.
+// Horizon    Rays that never reach the ground end on the far plane, or `farthest` behind the near plane if that is
+//            nearer. Orthographic rays always end on the far plane.
 // Units      metres
-// Bad data   With a singular matrix, heights that are NaN or exchanged, or a `farthest` that is not positive
-//            and finite, the footprint is empty, and footprintError() says why. Without an error it is empty
-//            when the camera sees no ground.
+// Bad data   The footprint is empty with a singular matrix, heights that are NaN or exchanged, or a `farthest` that
+//            is not positive and finite: footprintError() returns the reason. Else an empty footprint means that the
+//            camera sees no ground.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -30,10 +26,10 @@
 
 namespace hashphase {
 
-/// Views with a farther far plane end here by default [m behind the near plane].
+/// By default a view ends here, if its far plane is farther [m behind the near plane].
 inline constexpr double kFarthestView = 1e6;
 
-/// From the lowest to the highest point of all that stands on the ground.
+/// Lowest and highest point of all objects on the ground.
 template <class Scalar>
 struct HeightRange {
     Scalar low = 0;   ///< [m]; -infinity for no limit
@@ -41,19 +37,19 @@ struct HeightRange {
     UpAxis up = UpAxis::y;
 };
 
-/// A convex polygon on the map, and the prism over it between two heights. Corrects the paper's drag
-/// box and top-down camera, which take two corners and one height.
+/// A convex polygon on the map, and the prism over it between two heights. The paper's drag box and top-down camera
+/// take two corners and one height instead.
 template <class Scalar>
 class HASHPHASE_CAMERA_TEMPLATE_EXPORT GroundFootprint {
 public:
-    /// A point of the map [m]: (y, z), (x, z) or (x, y), where x, y or z is upwards.
+    /// A point of the map [m]: (y, z), (x, z) or (x, y), if x, y or z is up.
     using Point = detail::Vector2<Scalar>;
 
-    /// A polyhedron with nine planes, as of the view between the heights, has at most 14 corners.
+    /// The most corners: a polyhedron with nine planes has at most 14.
     static constexpr std::size_t kMostCorners = 14;
 
-    /// The footprint of the view through the matrix, 4 x 4 (frustum.hpp), in a rectangle of the screen,
-    /// between these heights, up to `farthest` [m] behind the near plane. Cost: some microseconds.
+    /// Takes a 4 x 4 matrix (frustum.hpp), the heights, and a rectangle of the screen. The view ends at most
+    /// `farthest` [m] behind the near plane. Cost: some microseconds.
     template <class Derived>
     GroundFootprint(const Eigen::MatrixBase<Derived>& viewProjection, DepthRange depthRange,
                     const HeightRange<Scalar>& heights,
@@ -64,15 +60,14 @@ public:
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
-    /// The corners of the polygon, in the order in which the first axis turns towards the second. One or two
-    /// corners where the footprint has no area.
+    /// The polygon's corners, in the direction from the first axis to the second. One or two if the footprint has no
+    /// area.
     [[nodiscard]] std::span<const Point> corners() const noexcept {
         return {corners_.begin(), corners_.end()};
     }
 
-    /// Returns the vertical prism over the polygon between the heights, for boxes that touch it or lie wholly
-    /// inside. Every box that touches the view between the heights touches the prism. Cost: as a
-    /// ConvexRegion.
+    /// Returns the vertical prism over the polygon between the heights, for boxes that touch it or are inside. Every
+    /// box that touches the view between the heights touches the prism. Cost: as a ConvexRegion.
     [[nodiscard]] ConvexRegion<Scalar> region(
         Containment containment = Containment::touching) const;
 
@@ -105,7 +100,7 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Says in a sentence why there is no footprint: see Bad data. Empty when there may be one.
+/// Returns in a sentence why there is no footprint (see Bad data). Empty if there may be one.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What a camera sees of a grid's proxies: those whose boxes touch its frustum, or any other convex
-// volume, such as the ground below a camera that looks down.
+// Finds the proxies that a camera sees: their boxes touch its frustum, or another convex volume.
 //
-//     Culler<float> culler;
-//     culler.look(grid, frustumRegion<float>(viewProjection, DepthRange::zeroToOne));
-//     culler.forEach([&](std::uint32_t index) { draw(objects[index]); });
-//
-// Never culls what is visible: a proxy whose box touches the volume is in the set. So are a few others: boxes
-// that only come near an edge of the volume, and proxies that a margin or an earlier frame has brought in;
-// overdraw() counts them.
-//
-// A frame   look() once, with the camera of the frame.
+// Exact     Every proxy whose box touches the volume is in the set. So are a few others: near an edge of the volume,
+//           from a margin, or from an earlier frame. overdraw() counts them.
+// Frame     Call look() once, with the camera of the frame.
 // Threads   look() reads the grid, as queries do, and needs this object for itself.
 // Units     metres
-// Bad data  With a volume without a point, or with a NaN, the set is empty; frustumError() says why.
-// Memory    A bit for each index up to the highest that is visible; a frame like the last one allocates
-//           nothing. Room for more than eight times as many goes after 256 frames.
+// Bad data  With a volume without a point, or with a NaN, the set is empty. frustumError() returns the reason.
+// Memory    A bit for each index up to the highest visible one. A frame like the last one allocates nothing. Room for
+//           more than eight times the need is released after 256 searches.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/peak_watch.hpp>
@@ -42,67 +35,66 @@ struct Overdraw {
     std::size_t unseen = 0;   ///< proxies in the set whose boxes do not touch the volume
 };
 
-/// Finds and keeps the set of proxies that a camera sees.
+/// Finds the set of proxies that a camera sees, and keeps it.
 template <class Scalar>
 class HASHPHASE_CULLING_TEMPLATE_EXPORT Culler {
 public:
     using Frustum = ConvexRegion<Scalar>;
     using View [[deprecated("Frustum")]] = Frustum;
 
-    /// Also finds proxies within `margin` [m] of the volume, so that a set may serve for several frames: see
-    /// look(). A negative or NaN margin counts as 0.
+    /// With a `margin` [m], look() also finds proxies at most that far from the volume, and may keep the set for
+    /// several frames. A negative or NaN margin counts as 0.
     explicit Culler(Scalar margin = 0);
 
     // --- Once a frame ----------------------------------------------------------------------------
 
-    /// Finds the proxies that touch the frustum and pass the filter, or keeps the last set where it is known
-    /// to hold them all: the frustum lies within the last set's volume, grown by the margin, no proxy was
-    /// added or removed since (Grid::populationNumber()), and none can have come in. `moved` [m] is how far
-    /// any corner of a box of the grid may have moved since the last call; infinite when this is unknown, or
-    /// the filter has changed. A Touch::byPlanes region takes less time than an exact one. With
-    /// Containment::inside no set is kept. Returns the query's cost, zeros when the set was kept. Cost: the
-    /// cells at the surface of the volume; at most one test for each proxy (Grid::visit()).
+    /// Finds the proxies that touch the frustum and pass the filter, or keeps the last set if it certainly contains
+    /// them: the frustum is within the last set's volume, grown by the margin, no proxy was added or removed
+    /// (Grid::populationNumber()), and none can have come in. With Containment::inside no set is kept.
+    /// Touch::byPlanes is faster than exact.
+    ///
+    /// `moved` [m] is how far any corner of a box may have moved since the last call; infinite if unknown, or if the
+    /// filter has changed. Returns the query's cost, zeros if the set was kept. Asserted: not called from the filter
+    /// or forEach(). Cost: Grid::visit() of the volume; only boxes in cells at its surface are tested.
     QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
     QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum, ProxyFilter filter,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
 
-    /// Says that corners of boxes may have moved by up to `moved` [m] in a frame without a look().
+    /// Notes that corners of boxes may have moved by up to `moved` [m] in a frame without look().
     void noteMoves(Scalar moved) noexcept;
 
-    /// Takes the proxy with that index out of the set. Call it for a removed proxy where the set is read
-    /// before the next look().
+    /// Removes the proxy with that index from the set. Call it for a removed proxy if you read the set before the
+    /// next look().
     void forget(std::uint32_t index) noexcept {
         if (index / 64 < bits_.size()) {
             bits_[index / 64] &= ~(std::uint64_t{1} << index % 64);
         }
     }
 
-    /// How often look() has found a new set instead of keeping the last one.
+    /// Number of times that look() has searched, instead of keeping the set.
     [[nodiscard]] std::uint64_t findCount() const noexcept { return findCount_; }
 
-    /// With true, look() goes on with the volume of the last look() while the camera moves, so that you can
-    /// see the set from outside, until a call with false. Boxes that move are still found.
+    /// While frozen, look() keeps its volume, whatever the camera does, so that you see the set from outside. Moving
+    /// boxes are still found.
     void freeze(bool isFrozen) noexcept { isFrozen_ = isFrozen; }
     [[nodiscard]] bool isFrozen() const noexcept { return isFrozen_; }
 
     // --- The visible set -------------------------------------------------------------------------
 
-    /// True when the proxy is in the set. A proxy removed since stays in the set until the next look() or
-    /// forget(); until then a new proxy with its index is taken for it.
+    /// Returns whether the proxy is in the set. A removed proxy is, until the next look() or forget(), and so is a
+    /// new proxy with its index.
     [[nodiscard]] bool isVisible(ProxyId id) const noexcept {
         return id.index / 64 < bits_.size() && (bits_[id.index / 64] >> (id.index % 64) & 1) != 0;
     }
 
-    /// Bit i % 64 of word i / 64 tells whether the proxy with index i is in the set; none is beyond the end.
+    /// Bit i % 64 of word i / 64 is set if the proxy with index i is in the set. No index beyond the end is.
     [[nodiscard]] std::span<const std::uint64_t> bits() const noexcept { return bits_; }
 
-    /// Number of proxies in the set.
     [[nodiscard]] std::size_t count() const noexcept;
 
-    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending; Grid::idAt() returns
-    /// its id. visit() must not call look() (asserted). Cost: a 64th of the highest index in the set, and the
-    /// calls.
+    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending. Grid::idAt() returns its id.
+    /// Asserted: visit() does not call look(). Cost: a 64th of the highest index, and the calls.
     template <class Visit>
     void forEach(Visit&& visit) const {
         const detail::QueryScope scope(this);
@@ -114,14 +106,13 @@ public:
         }
     }
 
-    /// The volume of the last look(), or the frozen one; not grown.
+    /// The volume of the last look(), or the frozen one, without the margin.
     [[nodiscard]] const Frustum& frustum() const noexcept { return frustum_; }
     [[deprecated("frustum()")]] [[nodiscard]] const Frustum& view() const noexcept {
         return frustum_;
     }
 
-    /// Compares the set with the proxies whose boxes now share a point with frustum(). Cost: that of an
-    /// exact query.
+    /// Compares the set with the proxies whose boxes touch frustum() now. Cost: as an exact query.
     [[nodiscard]] Overdraw overdraw(const Grid<Scalar>& grid) const;
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Names for objects that mean the same on every rank, as a ProxyId means something in one grid alone.
+// Ids that name an object on all ranks. A ProxyId is valid in one grid only.
 
 #include <broadphase/export.hpp>
 
@@ -12,15 +12,14 @@
 
 namespace hashphase {
 
-/// Names one object on all ranks. The program chooses the number: two objects that exist at the same time
-/// have different ones.
+/// Names one object on all ranks. Choose a different number for each object that exists at the same time.
 struct GlobalId {
     std::uint64_t value = 0;
 
     friend constexpr auto operator<=>(const GlobalId&, const GlobalId&) = default;
 };
 
-/// Two objects that make a pair, first < second. Ordered by first, then by second.
+/// The two objects of a pair, first < second. Ordered by first, then by second.
 struct GlobalPair {
     GlobalId first;
     GlobalId second;
@@ -28,15 +27,15 @@ struct GlobalPair {
     friend constexpr auto operator<=>(const GlobalPair&, const GlobalPair&) = default;
 };
 
-/// Returns the pair of the two, given in any order.
+/// Returns the pair of two objects, given in any order.
 [[nodiscard]] constexpr GlobalPair globalPair(GlobalId a, GlobalId b) noexcept {
     return a < b ? GlobalPair{a, b} : GlobalPair{b, a};
 }
 
 namespace detail {
 
-/// As many bits, all of which depend on all. SplitMix64, after G. Steele, D. Lea and C. Flood, "Fast splittable
-/// pseudorandom number generators", 2014.
+/// Mixes all bits. SplitMix64, after G. Steele, D. Lea and C. Flood, "Fast splittable pseudorandom number
+/// generators", 2014.
 [[nodiscard]] constexpr std::uint64_t mixedBits(std::uint64_t x) noexcept {
     x += 0x9e3779b97f4a7c15U;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
@@ -46,8 +45,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// The pairs of one rank, or of all, as two numbers that do not depend on the order of the pairs: two sets of
-/// pairs that differ have, but for one chance in 2^64, different sums. Sums of ranks are added by +=.
+/// A set of pairs as two numbers that do not depend on the order of pairs. Different sets have different sums, except
+/// with a chance of 2^-64. Add the sums of ranks by +=.
 struct PairSum {
     std::uint64_t count = 0;
     std::uint64_t hash = 0;

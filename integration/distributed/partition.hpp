@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Space cut into as many regions as there are ranks: a part of it for each process of a simulation.
+// Space cut into regions, one for each rank (process) of a simulation.
 //
-// Regions    A tree of cuts by planes across an axis. Each region is a box that has its lower faces, not its
-//            upper ones, so that every point, however far away, lies in one region. The outer ones are infinite.
-// Pairs      Two boxes that overlap share a point: the componentwise maximum of their min corners. The rank in
-//            whose region it lies has both boxes, and is the one to report the pair. So each pair is reported
-//            once, with no fixed width of a halo and no message about it.
-// Exact      Points and boxes are compared with cuts, and nothing is computed: no rounding, no cells.
-// Threads    const members from any number of threads
-//
-// Recursive bisection after M. Berger and S. Bokhari, "A partitioning strategy for nonuniform problems on
-// multiprocessors", 1987; the pair's point as in waLBerla, C. Godenschwager et al., 2013.
+// Regions  A tree of cuts by planes across an axis. A region is a box with its lower faces, without its upper ones:
+//          every point is in exactly one. Outer regions are infinite.
+// Pairs    A pair has a point: the larger of both min corners on each axis. The rank whose region contains it has
+//          both boxes, and reports the pair: once, without messages.
+// Exact    Coordinates are only compared with cuts: nothing is rounded.
+// Threads  const members from any number of threads
+// Source   Recursive bisection after M. Berger and S. Bokhari, "A partitioning strategy for nonuniform problems on
+//          multiprocessors", 1987. The pair's point as in waLBerla, C. Godenschwager et al., 2013.
 
 #include <broadphase/aabb.hpp>
 #include <integration/distributed/export.hpp>
@@ -30,7 +28,7 @@
 
 namespace hashphase {
 
-/// A plane across an axis: points with a coordinate less than `at` are below it, the others above.
+/// A plane across an axis. Points with a coordinate less than `at` are below it, all others above.
 template <class Scalar>
 struct Cut {
     Scalar at = 0;           ///< [m]
@@ -39,41 +37,41 @@ struct Cut {
     friend bool operator==(const Cut&, const Cut&) = default;
 };
 
-/// Where there is work, and how much of it.
+/// A place with work, and its amount.
 template <class Scalar>
 struct WeightedPoint {
     Vector3<Scalar> at;  ///< a min corner [m]
     double weight = 0;   ///< in any unit, 0 or more
 };
 
-/// The box around both corners. Of an inverted box, too, it holds every point by which its pairs are owned.
+/// Returns the box around both corners. It contains all points by which pairs of the box are owned, even if the box
+/// is inverted.
 template <class Scalar>
 [[nodiscard]] Aabb<Scalar> hullOf(const Aabb<Scalar>& box) noexcept {
     return {box.min().cwiseMin(box.max()), box.min().cwiseMax(box.max())};
 }
 
-/// The point by which the pair of two boxes that overlap is owned: it lies in the hull of each.
+/// Returns the point that decides which rank owns the pair of two overlapping boxes. It lies in the hull of each.
 template <class Scalar>
 [[nodiscard]] Vector3<Scalar> pairPoint(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
     return a.min().cwiseMax(b.min());
 }
 
-/// Says which rank owns what part of space.
+/// Assigns each part of space to a rank.
 template <class Scalar>
 class HASHPHASE_DISTRIBUTED_TEMPLATE_EXPORT Partition {
 public:
     /// One rank, which owns all of space.
     Partition() = default;
 
-    /// The partition of these cuts, one fewer than ranks, as cuts() lists them.
-    /// Throws std::invalid_argument where a cut is NaN or has no such axis.
+    /// Takes the cuts in the order of cuts(), one fewer than ranks. Throws std::invalid_argument if a cut is NaN or
+    /// its axis is above 2.
     explicit Partition(std::span<const Cut<Scalar>> cuts);
 
-    /// Cuts space so that each of `ranks` (1 or more, asserted) gets about the same weight: across the axis along
-    /// which the points are spread farthest, at the point that shares the weight best. Points with a NaN do not
-    /// count. Keeps the axes of the partition of the last time, if there was one, where others are not clearly
-    /// longer: so less changes hands. The result is the same for the same points in the same order.
-    /// Cost: O(points * log(points) * log(ranks)).
+    /// Cuts space so that each of `ranks` gets about the same weight: across the axis along which points are spread
+    /// farthest, at the point that shares the weight best. Ignores points with a NaN. Keeps the axes of `last`, if it
+    /// has as many ranks, unless another axis is clearly longer: fewer objects change ranks. Equal points in equal
+    /// order give equal results. Asserted: `ranks` is 1 or more. Cost: O(points * log(points) * log(ranks)).
     [[nodiscard]] static Partition balanced(std::uint32_t ranks,
                                             std::span<const WeightedPoint<Scalar>> points,
                                             const Partition* last = nullptr);
@@ -82,15 +80,15 @@ public:
         return static_cast<std::uint32_t>(cuts_.size() + 1);
     }
 
-    /// The rank whose region the point [m] lies in. A NaN counts as above every cut. Cost: O(log ranks).
+    /// Returns the rank whose region contains the point [m]. A NaN counts as above every cut. Cost: O(log ranks).
     [[nodiscard]] std::uint32_t rankOf(const Vector3<Scalar>& point) const noexcept;
 
-    /// The region of a rank [m]: points with min() <= point < max(). Empty where a cut lies outside of the region
+    /// Returns the region of a rank [m]: points with min() <= point < max(). Empty if a cut lies outside the region
     /// that it divides.
     [[nodiscard]] Aabb<Scalar> region(std::uint32_t rank) const noexcept;
 
-    /// Calls visit(rank), ascending, for each rank whose region the hull of the box touches; for none where
-    /// it has a NaN. Cost: O(ranks visited * log ranks).
+    /// Calls visit(rank), ascending, for each rank whose region the hull of the box touches; for none with a NaN.
+    /// Cost: O(ranks visited * log ranks).
     template <class Visit>
     void forEachRank(const Aabb<Scalar>& box, const Visit& visit) const {
         const Aabb<Scalar> hull = hullOf(box);
@@ -105,8 +103,8 @@ public:
         }
     }
 
-    /// Calls visit(rank), ascending, for each rank whose closed region has a key: region.key(box) >= 0, as that
-    /// of a RayRegion. Cost: O(ranks visited * log ranks).
+    /// Calls visit(rank), ascending, for each rank whose closed region has a key: region.key(box) >= 0, as for a
+    /// RayRegion. Cost: as forEachRank().
     template <class Region, class Visit>
     void forEachRankWithKey(const Region& region, const Visit& visit) const {
         const auto sides = [&](const Aabb<Scalar>& box, const Cut<Scalar>& cut) {
@@ -117,8 +115,8 @@ public:
         }
     }
 
-    /// The cuts from the root of the tree on: each is followed by those below it, then by those above it. The
-    /// first half of the ranks lies below, where their number is odd the smaller half.
+    /// The cuts from the root of the tree: each cut, then those below it, then those above it. The first half of the
+    /// ranks is below; of an odd number, the smaller half.
     [[nodiscard]] std::span<const Cut<Scalar>> cuts() const noexcept { return cuts_; }
 
     friend bool operator==(const Partition&, const Partition&) = default;
@@ -137,7 +135,7 @@ private:
         return box;
     }
 
-    // The ranks from `first` up to `last`, between which cuts_[node] lies.
+    // Visits the ranks from `first` to `last` - 1; cuts_[node] lies between them.
     template <class Sides, class Visit>
     void visitNode(std::uint32_t first, std::uint32_t last, std::size_t node,
                    const Aabb<Scalar>& region, const Sides& sides, const Visit& visit) const {

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Queries to all ranks concerned: what touches a box, lies within a distance, or is met by a ray, wherever it lives.
-// Knows no transport, as RankGrid: questions are carried to the ranks whose regions they touch, answers back.
+// Queries to all ranks: objects that touch a box, lie within a distance, or are met by a ray, wherever they live.
 //
 //     for (const Parcel& parcel : asked.pack(grid, questions)) { send(parcel.rank, parcel.bytes); }
 //     for (const Parcel& parcel : asked.answer(grid, received)) { send(parcel.rank, parcel.bytes); }
 //     const Answers<float> answers = asked.finish(received);
 //
-// Frame     asked by all ranks together, where one has no question as well; after RankGrid::finish() and before the
-//           next change (asserted)
-// Result    the same for any number of ranks
-// Failure   throws RankError as RankGrid::finish() does
-// Bad data  A question with a NaN finds nothing.
+// Transport  Your program carries the parcels, as for RankGrid.
+// Frame      By all ranks together, even without a question, after RankGrid::finish() and before the next change
+//            (asserted).
+// Result     Does not depend on the number of ranks.
+// Failure    answer() and finish() throw RankError, as RankGrid::finish() does.
+// Bad data   A question with a NaN finds nothing.
 
 #include <integration/distributed/rank_grid.hpp>
 
@@ -24,19 +24,19 @@
 
 namespace hashphase {
 
-/// A query, and how much of its answer is wanted. Make it by box(), sphere() or ray().
+/// A query, and the most objects that it wants. Make it by box(), sphere() or ray().
 template <class Scalar>
 struct Question {
     enum class Shape : std::uint8_t { box, sphere, ray };
 
     Shape shape = Shape::box;
-    Aabb<Scalar> extent;  ///< the box; or the box that moves along a ray, relative to it [m]
-    Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< a ray's first end; a ball's middle
-    Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< a ray's other end
-    Scalar radius = 0;                               ///< a ball's
-    std::uint32_t most = ~std::uint32_t{0};  ///< keeps so many, those with the smallest keys
+    Aabb<Scalar> extent;  ///< the box; or the box that moves along the ray, relative to it [m]
+    Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< beginning of a ray, centre of a ball [m]
+    Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< end of a ray [m]
+    Scalar radius = 0;                               ///< of a ball [m]
+    std::uint32_t most = ~std::uint32_t{0};  ///< keeps at most this many, with the smallest keys
 
-    /// What BoxRegion finds.
+    /// Finds as BoxRegion.
     [[nodiscard]] static Question box(const Aabb<Scalar>& box,
                                       std::uint32_t most = ~std::uint32_t{0}) {
         Question question;
@@ -44,7 +44,7 @@ struct Question {
         question.most = most;
         return question;
     }
-    /// What SphereRegion finds. With `most`, the nearest objects.
+    /// Finds as SphereRegion. With `most`, finds the nearest objects.
     [[nodiscard]] static Question sphere(const Vector3<Scalar>& center, Scalar radius,
                                          std::uint32_t most = ~std::uint32_t{0}) {
         Question question;
@@ -54,7 +54,7 @@ struct Question {
         question.most = most;
         return question;
     }
-    /// What RayRegion finds. With a `most` of 1, the first box that the ray enters.
+    /// Finds as RayRegion. With `most` 1, finds the first box that the ray enters.
     [[nodiscard]] static Question ray(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
                                       std::uint32_t most = ~std::uint32_t{0},
                                       const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(),
@@ -85,24 +85,25 @@ template <class Scalar>
 struct Answers {
     std::span<const FoundObject<Scalar>> found;
     std::span<const std::size_t>
-        begins;  ///< where each answer begins in `found`, and where the last one ends
+        begins;  ///< of each answer in `found`, and the end of the last one
 
-    /// The answer to question i, each object once, sorted by key, then by id.
+    /// Returns the answer to question i: each object once, sorted by key, then by id.
     [[nodiscard]] std::span<const FoundObject<Scalar>> of(std::size_t i) const noexcept {
         return found.subspan(begins[i], begins[i + 1] - begins[i]);
     }
 };
 
-/// The questions of one rank, and its answers to those of others. Keeps its memory.
+/// Questions of one rank, and its answers to others. Keeps its memory.
 template <class Scalar>
 class HASHPHASE_DISTRIBUTED_TEMPLATE_EXPORT RankQuestions {
 public:
-    /// Returns the questions for other ranks, and answers what this rank can. Valid until the next call.
-    /// Cost: O(log ranks) for each rank concerned.
+    /// Returns parcels of questions for other ranks, valid until the next call, and answers from this rank's own
+    /// grid. Throws std::length_error beyond 2^32 - 1 questions. Cost: O(log ranks) for each rank concerned, and the
+    /// queries here.
     std::span<const Parcel> pack(const RankGrid<Scalar>& grid,
                                  std::span<const Question<Scalar>> questions);
 
-    /// Answers what other ranks have asked. Valid until the next call. Cost: a query for each question.
+    /// Answers the questions of other ranks. Valid until the next call. Cost: a query for each question.
     std::span<const Parcel> answer(const RankGrid<Scalar>& grid, std::span<const Parcel> received);
 
     /// Joins the answers of all ranks. Cost: O(found * log(found)).

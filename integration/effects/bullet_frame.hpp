@@ -1,42 +1,35 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What the effects of a declaration (scene_effects.hpp) mean for a Bullet world. Bullet computes only
-// declared effects.
+// The effects of a declaration (scene_effects.hpp) in a Bullet world. Bullet computes only declared effects.
 //
 //     hashphase::WorldConfigurator configurator(world);      // integration/bullet/world_effects.hpp
 //     configurator.apply(hashphase::worldEffectsOf(scene));
 //     configurator.step(timeStep);                           // or world.stepSimulation()
 //
-// effect       what is set in Bullet                   what is lost without it
-// motion       nothing: step() steps the world         everything moves: step() finds the pairs of bodies as
-//                                                      they stand, if they are declared, and else does
-//                                                      nothing (call updateAabbs() for what you move); do
-//                                                      not call stepSimulation(), which moves whatever
-//                                                      has a velocity
-// terrain      nothing: the ground is a static body    the ground: do not add it
-//              of yours (static_triangles.hpp)
-// pairs        the world's filter for overlaps         contacts, ghosts' lists, response and sweep
-// response     every object's answer to contacts       bodies fall through each other, contacts are still
-//                                                      told
-// sweep        m_useContinuous; CCD thresholds for     bodies that move by more than half their width in
-//              bodies that are fast for their size     a step may pass thin ones
-// sleeping     deactivation, linear thresholds         nothing: bodies that rest go on being computed
-// rotation     angular factors                         bodies keep their orientation
-// friction     all frictions                           bodies slide for ever
-// picking,     nothing: they ask the grid of           nothing in Bullet; none is made for them either
-// boxSelection, SpatialHashBroadphase::grid()
-// culling, proximity, zones, radar
+//     effect       setting in Bullet                         lost without the effect
+//     motion       none: step() steps the world              motion. step() only finds declared pairs of bodies as
+//                                                            they are. Call updateAabbs() for bodies that you move,
+//                                                            not stepSimulation(): it moves bodies with a velocity
+//     terrain      none: the ground is your static body      the ground: do not add it
+//                  (static_triangles.hpp)
+//     pairs        the world's overlap filter                contacts, ghosts' lists, response and sweep
+//     response     each object's answer to contacts          bodies fall through each other; contacts are reported
+//     sweep        m_useContinuous; CCD thresholds of        bodies that move by more than half their width in a
+//                  bodies fast for their size                step may pass thin ones
+//     sleeping     deactivation, linear thresholds           nothing: resting bodies are still computed
+//     rotation     angular factors                           bodies keep their orientation
+//     friction     all frictions                             bodies slide for ever
+//     the others   none: they query                          nothing
+//                  SpatialHashBroadphase::grid()
 //
-// Observers over that grid know objects by ProxyId, and keep data by index (colours, a late visible set).
-// Call Observers::forget() when an object is removed, because another object gets its index. After an origin
-// shift, move zones, view and interest yourself.
-//
-// Bullet ignores some settings: ResponseEffect::restitution, because each body has its own
-// (WorldEffects::restitution sets that of all); SweepEffect::mode, which belongs to the broadphase
-// (SpatialHashConfig::sweep); and SleepingEffect::framesBeforeSleep, because bodies fall asleep after
-// gDeactivationTime, 2 s. Finite motion.bounds and sleeping.interestRadius are errors: put static planes at
-// the bounds, and deactivate far bodies.
+// Observers  know objects by ProxyId, and keep data by index. If you remove an object, call Observers::forget():
+//            another object gets its index. After an origin shift, move zones, view and interest yourself.
+// Ignored    ResponseEffect::restitution: each body has its own (WorldEffects::restitution sets all).
+//            SweepEffect::mode: SpatialHashConfig::sweep sets it. SleepingEffect::framesBeforeSleep: bodies sleep
+//            after gDeactivationTime, 2 s.
+// Errors     finite motion.bounds and sleeping.interestRadius. Put static planes at the bounds, and deactivate far
+//            bodies.
 
 #include <broadphase/core/raise.hpp>
 #include <integration/bullet/world_effects.hpp>
@@ -49,7 +42,7 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Says in a sentence why Bullet cannot run the declaration; empty when it can.
+/// Returns in a sentence why Bullet cannot run the declaration; empty if it can.
 [[nodiscard]] inline std::string bulletEffectsError(const SceneEffects& effects) {
     const std::string error = effectsError(effects);
     if (!error.empty()) {
@@ -67,9 +60,9 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
     return {};
 }
 
-/// Returns the declaration in Bullet's terms. Bodies are swept as declared; where they are to have CCD
-/// thresholds of their own, reset() `fastFrom` of the result. With SleepingEffect::slowBelow 0 they have
-/// sleeping thresholds of their own. Throws std::invalid_argument with bulletEffectsError().
+/// Returns the declaration in Bullet's terms. Bodies keep CCD thresholds of their own if you reset() `fastFrom` of
+/// the result, and sleeping thresholds with SleepingEffect::slowBelow 0. Throws std::invalid_argument with
+/// bulletEffectsError().
 [[nodiscard]] inline WorldEffects worldEffectsOf(const SceneEffects& effects) {
     if (const std::string error = bulletEffectsError(effects); !error.empty()) {
         detail::raiseInvalidArgument(error);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The effects that a scene may call for, and sets of effects.
-//
-//     EffectSet lookers{Effect::culling, Effect::radar};
-//     if (lookers.contains(Effect::radar)) { ... }  // namesOf(lookers): "culling, radar"
+// The effects that a scene can declare, and sets of effects.
 
 #include <array>
 #include <cstdint>
@@ -15,21 +12,21 @@
 
 namespace hashphase {
 
-/// What a scene may call for. The first eight are its physics, the other six only look at it.
+/// What a scene can declare. The first eight are its physics; the other six only look at it.
 enum class Effect : std::uint8_t {
-    motion,        ///< bodies go on with their velocities
+    motion,        ///< bodies move with their velocities
     terrain,       ///< bodies stand on the ground
-    pairs,         ///< which boxes overlap: births and deaths
-    response,      ///< bodies that touch bounce off
-    sweep,         ///< fast bodies meet what they pass
-    sleeping,      ///< bodies that need not move stand still
+    pairs,         ///< births and deaths of overlapping pairs
+    response,      ///< touching bodies bounce
+    sweep,         ///< fast bodies hit bodies on their way
+    sleeping,      ///< slow or far bodies stand still
     rotation,      ///< bodies turn; only under Bullet
-    friction,      ///< bodies that touch rub; only under Bullet
-    picking,       ///< what is under the pointer
-    boxSelection,  ///< what is in a rectangle that is dragged
-    culling,       ///< what a camera sees
+    friction,      ///< touching bodies rub; only under Bullet
+    picking,       ///< bodies under the pointer
+    boxSelection,  ///< bodies in a dragged rectangle
+    culling,       ///< bodies that a camera sees
     proximity,     ///< agents look at their neighbours
-    zones,         ///< which proxy is in which zone of interest
+    zones,         ///< proxies in zones of interest
     radar,         ///< counts of proxies in coarse cells
 };
 
@@ -40,11 +37,10 @@ inline constexpr std::array kAllEffects{
     Effect::culling,  Effect::proximity, Effect::zones,    Effect::radar,
 };
 
-/// Returns the name as it is spelled in code and in files: "boxSelection". Empty for a value that is no
-/// Effect.
+/// Returns the name as in code and files, such as "boxSelection". Empty for a value that is no Effect.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string_view nameOf(Effect effect) noexcept;
 
-/// A set of effects; a value of two bytes. Empty by default. Every operation costs O(1).
+/// A set of effects: a value of two bytes, empty by default. Each operation costs O(1).
 class EffectSet {
 public:
     constexpr EffectSet() noexcept = default;
@@ -61,7 +57,7 @@ public:
         return set;
     }
 
-    /// Inserting an effect that is in the set, and erasing one that is not, changes nothing.
+    /// Inserting a present effect, or erasing an absent one, changes nothing.
     constexpr void insert(Effect effect) noexcept { bits_ |= bitOf(effect); }
     constexpr void erase(Effect effect) noexcept {
         bits_ &= static_cast<std::uint16_t>(~bitOf(effect));
@@ -69,13 +65,13 @@ public:
     [[nodiscard]] constexpr bool contains(Effect effect) const noexcept {
         return (bits_ & bitOf(effect)) != 0;
     }
-    /// True when the two sets have an effect in common.
+    /// Returns whether the two sets have an effect in common.
     [[nodiscard]] constexpr bool containsAny(EffectSet others) const noexcept {
         return (bits_ & others.bits_) != 0;
     }
     [[nodiscard]] constexpr bool isEmpty() const noexcept { return bits_ == 0; }
 
-    /// Union (|), intersection (&), and the effects of `a` that are not in `b` (-).
+    /// Union (|), intersection (&) and difference (-).
     friend constexpr EffectSet operator|(EffectSet a, EffectSet b) noexcept {
         return EffectSet(static_cast<std::uint16_t>(a.bits_ | b.bits_));
     }
@@ -96,11 +92,10 @@ private:
     std::uint16_t bits_ = 0;
 };
 
-/// Returns the names in the order of Effect, with commas between them: "motion, pairs". Returns "nothing" for
-/// an empty set.
+/// Returns the names in the order of Effect, such as "motion, pairs"; "nothing" for an empty set.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string namesOf(EffectSet effects);
 
-/// The effects that decide where the bodies of a Simulation are.
+/// The effects that decide the positions of a Simulation's bodies.
 inline constexpr EffectSet kMovingEffects{Effect::motion, Effect::terrain, Effect::response,
                                           Effect::sweep, Effect::sleeping};
 

@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The effects of a scene that only look at it: culling, proximity, zones and radar in each frame, picking
-// and box selection on request. They work over any grid: that of a Simulation, or of a live Bullet world
-// (SpatialHashBroadphase::grid()).
+// The effects of a scene that only look at it: culling, proximity, zones and radar in each frame, picking and box
+// selection on request. They work over any grid, such as a Simulation's or SpatialHashBroadphase::grid().
 //
-//     Observers<float> observers(effects);
-//     observers.setView(frustumRegion<float>(viewProjection, DepthRange::zeroToOne));
-//     observers.observe({grid});
-//     observers.culler().forEach([&](std::uint32_t index) { draw(objects[index]); });
-//
-// Undeclared  An effect that is not declared has no phase, no table and no cost. A call for it throws
-//             UndeclaredEffect.
-// A frame     Say what has changed (view, interest, zones), then observe() once.
-// Exact       What an effect finds depends only on the boxes and on its own settings, whatever else is
-//             declared.
-// Late        A declaration may let an effect look in every n-th frame only. In the frames between, the
-//             answer is that of an earlier frame: cost() counts late answers.
+// Undeclared  An undeclared effect has no phase, no table and no cost. A call that needs it throws UndeclaredEffect.
+// Frame       Set a changed view, interest or zones, then call observe() once.
+// Exact       A result depends only on the boxes and the effect's own settings.
+// Late        An effect may look in every n-th frame only. Between, it repeats an earlier answer; cost() counts
+//             these.
 // Threads     Everything reads the grid, as queries do, and needs this object for itself.
-// Removed     Call forget() for a proxy that is removed. (A Simulation does.)
-// Failure     Where memory runs out, std::bad_alloc is passed on. This frame then lacks some answers; the
-//             next frames go on.
+// Removed     Call forget() for each removed proxy. (A Simulation does.)
+// Failure     std::bad_alloc is passed on. This frame then lacks some answers; the next frames work.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -47,23 +38,21 @@
 
 namespace hashphase {
 
-/// A grid, and what each of its proxies takes part in. By default every proxy takes part in every effect.
+/// A grid, and the effects in which each proxy takes part: by default in all.
 template <class Scalar>
 struct ObservedScene {
     const Grid<Scalar>& grid;
 
-    /// By ProxyId::index: which effects may find the proxy. Proxies beyond the end take part in all effects.
+    /// By ProxyId::index: the effects that may find the proxy. Beyond the end, all effects.
     std::span<const EffectSet> effects = {};
 
-    /// By ProxyId::index: the group in which the radar counts the proxy. Proxies beyond the end are in
-    /// group 0.
+    /// By ProxyId::index: the proxy's group in the radar. Beyond the end, group 0.
     std::span<const std::uint32_t> groups = {};
 
-    /// Effects that some proxy takes part in. The other effects are not run.
+    /// Effects in which some proxy takes part. The others are not run.
     EffectSet present = EffectSet::all();
 
-    /// Effects that every proxy is known to take part in. For these the single proxies are not asked, which
-    /// is faster.
+    /// Effects in which every proxy takes part. They run faster: proxies are not asked.
     EffectSet common = {};
 
     [[nodiscard]] bool allTakePartIn(Effect effect) const noexcept {
@@ -74,7 +63,7 @@ struct ObservedScene {
     }
 };
 
-/// Runs those effects of a declaration that look at a grid.
+/// Runs the effects of a declaration that look at a grid.
 template <class Scalar>
 class HASHPHASE_EFFECTS_TEMPLATE_EXPORT Observers {
 public:
@@ -87,68 +76,65 @@ public:
     Observers(const Observers&) = delete;
     Observers& operator=(const Observers&) = delete;
 
-    /// Goes on with another declaration. Tables of effects that are not declared any more are freed; zones,
-    /// colours and view of effects that are still declared stay. In the next frame no answer is late. Throws
-    /// as the constructor, or std::bad_alloc; then nothing has changed.
+    /// Changes the declaration. Frees tables of effects no longer declared; the others keep zones, colours and view.
+    /// The next frame has no late answers, except agents out of turn. Throws as the constructor, or std::bad_alloc;
+    /// then nothing has changed.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
 
-    // --- What is looked at -----------------------------------------------------------------------
+    // --- View, interest, zones and colours -------------------------------------------------------
 
-    /// Sets the camera's volume, or any other one; all of space until then. Needs culling.
+    /// Sets the camera's volume, or another one; at first all of space. Needs culling.
     void setView(const ConvexRegion<Scalar>& view);
 
-    /// Sets where the player is [m]. What is far from it may be late, as declared, and the radar is around
-    /// it. Without an interest (std::nullopt) nothing is far, and the radar is around the origin.
+    /// Sets the player's place [m]. Objects far from it may be late, as declared, and the radar is around it. With
+    /// std::nullopt nothing is far, and the radar is around the origin.
     void setInterest(const std::optional<Point>& interest) { interest_ = interest; }
     [[nodiscard]] const std::optional<Point>& interest() const noexcept { return interest_; }
 
     /// Add, set and remove zones here; observe() calls Zones::update(). Needs zones.
     [[nodiscard]] Zones<Scalar>& zones();
 
-    /// Gives the proxy with that index a colour, which is 0 until then. Needs proximity. Cost: O(1), and
-    /// memory for all lower indices.
+    /// Sets the colour of the proxy with that index, at first 0. Needs proximity. Cost: O(1), and memory for all
+    /// lower indices.
     void setColour(std::uint32_t index, std::uint32_t colour);
 
-    /// Runs one frame of the declared effects. `moved` [m] is how far any corner of a box may have moved
-    /// since the last frame; infinite when this is unknown or a proxy was added: see Culler::look(). Returns
-    /// the cost. The result does not depend on `parallelFor`.
+    /// Runs one frame. `moved` [m] is how far any corner of a box may have moved since the last frame; infinite if
+    /// unknown, or if a proxy was added (Culler::look()). Returns the cost.
     const SceneCost& observe(const Scene& scene,
                              Scalar moved = std::numeric_limits<Scalar>::infinity(),
                              ParallelFor parallelFor = serialFor);
 
-    /// Call it when the proxy with that index is removed. The next proxy with this index then is not visible
-    /// because the removed one was, and has colour 0.
+    /// Forgets a removed proxy: the next proxy with its index is not visible because of it, and has colour 0.
     void forget(std::uint32_t index) noexcept;
 
-    /// Call it before another grid replaces this one, in which indices mean the same and generations do not.
-    /// Proxies in a zone enter it again, without having left.
+    /// Call it before another grid replaces this one, with equal indices but other generations. Proxies in a zone
+    /// enter it again, without leaving it.
     void forgetProxies() noexcept;
 
-    /// Calls `watch` after each phase with its effect's name, for a profiler. An empty function ends the
-    /// calls.
+    /// Calls `watch` with the effect's name after each phase, for a profiler. An empty function ends the calls.
     void watchPhases(std::function<void(std::string_view)> watch) { watch_ = std::move(watch); }
 
-    // --- What was found in the last frame --------------------------------------------------------
+    // --- Results of the last frame ---------------------------------------------------------------
 
     /// The visible set. Needs culling.
     [[nodiscard]] const Culler<Scalar>& culler() const;
 
-    /// By ProxyId::index: the colour that each agent has taken; beyond the end, 0. Valid until the next
-    /// frame or setColour(). Needs proximity.
+    /// Colours of agents by ProxyId::index; beyond the end, 0. Valid until the next frame or setColour(). Needs
+    /// proximity.
     [[nodiscard]] std::span<const std::uint32_t> colours() const;
 
-    /// Which proxies entered, stayed in and left zones. Valid until the next frame. Needs zones.
+    /// Events of zones. Valid until the next frame. Needs zones.
     [[nodiscard]] const ZoneEvents& zoneEvents() const;
 
-    /// Counts as Radar::scan() returns them. Valid until the next frame. Needs radar.
+    /// Counts as of Radar::scan(). Valid until the next frame. Needs radar.
     [[nodiscard]] std::span<const std::uint32_t> radarCounts() const;
 
-    /// What the last frame cost, including picks and selections between the frame before and it.
+    /// Cost of the last frame, with picks and selections since the frame before.
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
-    // --- When it is asked for --------------------------------------------------------------------
+    // --- On request ------------------------------------------------------------------------------
 
     /// As pickNearest(), among proxies that take part in picking. Needs picking.
     [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray);
@@ -169,7 +155,7 @@ private:
     struct ZoneWatch;
     struct RadarWatch;
 
-    /// A phase of observe(), and whose it is.
+    /// A phase of observe(), and its effect.
     struct Phase {
         Effect effect;
         void (Observers::*run)(const Scene&, Scalar moved, ParallelFor);
@@ -197,7 +183,7 @@ private:
     std::uint64_t frame_ = 0;
     EffectSet presentBefore_;
     EffectSet
-        farewell_;  // what somebody took part in in the last frame, and nobody does in this one
+        farewell_;  // effects in which proxies took part in the last frame, and none do in this one
     std::optional<Point> interest_;
     SceneCost cost_;   // of the last frame
     SceneCost asked_;  // of picks and selections since

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What a frame of a scene cost, as numbers, and which tables a scene keeps. Each number and each table
-// belongs to some effects. Where none of these is declared, the number or the size of the table is exactly 0.
+// Costs of a scene's frame as numbers, and the tables that a scene keeps. Each belongs to some effects, and is
+// exactly 0 if none of these is declared.
 //
-//     SceneCost sum;
-//     sum += simulation.advance(1.0F / 60);
-//     std::uint64_t born = sum[SceneCounter::pairsBorn];
-//     for (std::size_t i = 0; i < kSceneCounterCount; ++i) {
-//         print(sceneCounters()[i].name, sum[static_cast<SceneCounter>(i)]);
-//     }
+//     const SceneCost& cost = simulation.advance(1.0F / 60);
+//     std::uint64_t born = cost[SceneCounter::pairsBorn];
 //
-// Threads   plain values: any thread may use its own copies
+// Threads  Values: any thread may use its own copies.
 
 #include <integration/effects/effect.hpp>
 #include <integration/effects/export.hpp>
@@ -23,45 +19,45 @@
 
 namespace hashphase {
 
-/// The effects that ask a grid. A Simulation has a grid while one of them is declared.
+/// The effects that query a grid. A Simulation has a grid while one of them is declared.
 inline constexpr EffectSet kGridEffects{
     Effect::pairs,     Effect::picking, Effect::boxSelection, Effect::culling,
     Effect::proximity, Effect::zones,   Effect::radar,
 };
 
-/// What is counted in a frame. sceneCounters() tells which effects a counter belongs to.
+/// The work of a frame. sceneCounters() lists the effects of each counter.
 enum class SceneCounter : std::uint8_t {
     // Bodies.
     bodiesMoved,      ///< bodies that moved by their velocities
-    fellAsleep,       ///< bodies that stopped
-    wokeUp,           ///< sleeping bodies that go on
-    sleepersAsked,    ///< sleeping bodies tested whether they are to wake
+    fellAsleep,       ///< bodies that fell asleep
+    wokeUp,           ///< sleeping bodies that woke
+    sleepersAsked,    ///< sleeping bodies tested for waking
     groundsAsked,     ///< bodies put on the ground
     trianglesTested,  ///< triangles tested for these bodies
     // The grid and its pairs.
     proxiesHashed,    ///< boxes set in the grid
     entriesFiled,     ///< entries written into the grid's tables
-    cellRowsVisited,  ///< rows of cells read by all that ask, or a ray's blocks of boxes
+    cellRowsVisited,  ///< rows of cells, or a ray's blocks of boxes, read by all queries
     boxesTested,      ///< boxes tested for pairs
-    pairsWatched,     ///< pairs tested whether they still overlap
+    pairsWatched,     ///< known pairs tested for overlap
     couplesWatched [[deprecated("pairsWatched")]] = pairsWatched,
     pairsBorn,         ///< pairs that began
     pairsDied,         ///< pairs that ended
-    contactsTested,    ///< pairs of bodies tested whether the spheres touch
+    contactsTested,    ///< pairs of spheres tested for contact
     contactsSolved,    ///< bounces among these pairs
     sweepsSolved,      ///< bodies that swept
-    sweepBoxesTested,  ///< boxes tested along the ways of these bodies
-    sweepersStopped,   ///< sweeping bodies that met one which they no longer touch at the end
+    sweepBoxesTested,  ///< boxes tested on their ways
+    sweepersStopped,   ///< sweeping bodies that hit one that they would have passed
     // Questions asked since the frame before.
     picks,                 ///< picking rays
     pickBoxesTested,       ///< boxes tested for these rays
     selections,            ///< drag rectangles
     selectionBoxesTested,  ///< boxes tested for these rectangles
     // Culling.
-    viewsFound,          ///< 1 where the visible set was found again, 0 where it was kept
+    viewsFound,          ///< 1 if the visible set was searched, 0 if it was kept
     cellRowsCulled,      ///< rows of cells read
     cullingBoxesTested,  ///< boxes tested against the view
-    framesCulledLate,    ///< 1 where the visible set is that of an earlier frame, by declaration
+    framesCulledLate,    ///< 1 if the visible set is of an earlier frame, by declaration
     // Proximity.
     agentsScanned,     ///< agents that looked around, or were looked at
     neighboursTested,  ///< distances tested
@@ -71,12 +67,12 @@ enum class SceneCounter : std::uint8_t {
     zoneBoxesTested,  ///< boxes tested for these zones
     zonesLate,        ///< far zones not searched in this frame
     // Radar.
-    radarScans,        ///< 1 where the radar was scanned
+    radarScans,        ///< 1 if the radar was scanned
     radarBoxesTested,  ///< boxes tested for the scan
-    radarsLate,        ///< 1 where the counts are those of an earlier frame
+    radarsLate,        ///< 1 if the counts are of an earlier frame
 };
 
-/// What a scene keeps in memory. sceneTables() tells which effects a table belongs to.
+/// Tables of a scene. sceneTables() lists the effects of each table.
 enum class SceneTable : std::uint8_t {
     bodies,      ///< positions, radii, and the effects that each body takes part in
     velocities,  ///< of all bodies
@@ -98,25 +94,25 @@ enum class SceneTable : std::uint8_t {
     groups,      ///< the radar group of each body
 };
 
-/// The name of a counter or table, and the effects that it belongs to.
+/// A counter or table, and its effects.
 struct SceneItem {
     std::string_view name;         ///< as the enumerator is spelled: "bodiesMoved"
-    EffectSet owners;              ///< effects that count or keep it; empty: every scene does
+    EffectSet owners;              ///< empty: every scene has it
     std::string_view description;  ///< a few words in English
 };
 
-/// How many counters and tables there are.
+/// Numbers of counters and tables.
 inline constexpr std::size_t kSceneCounterCount = 35;
 inline constexpr std::size_t kSceneTableCount = 18;
 
-/// Return all items, in the order of SceneCounter and of SceneTable: for reports and profilers.
+/// Return all items, in the order of their enumerators, for reports and profilers.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT const std::array<SceneItem, kSceneCounterCount>&
 sceneCounters() noexcept;
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT const std::array<SceneItem, kSceneTableCount>&
 sceneTables() noexcept;
 
-/// A number for each Item: of one frame, or the sum of several frames. All numbers are 0 at first. Item is
-/// SceneCounter or SceneTable; items beyond the last enumerator are not checked.
+/// A number for each Item, SceneCounter or SceneTable: of one frame, or a sum. All are 0 at first. Items beyond the
+/// last enumerator are not checked.
 template <class Item, std::size_t count>
 class SceneNumbers {
 public:
@@ -126,7 +122,6 @@ public:
     [[nodiscard]] std::uint64_t& operator[](Item item) noexcept {
         return numbers_[static_cast<std::size_t>(item)];
     }
-    /// Adds number by number.
     SceneNumbers& operator+=(const SceneNumbers& other) noexcept {
         for (std::size_t i = 0; i < count; ++i) {
             numbers_[i] += other.numbers_[i];
@@ -139,7 +134,7 @@ private:
     std::array<std::uint64_t, count> numbers_{};
 };
 
-/// What one frame or several cost, by counter.
+/// Costs of one frame or several, by counter.
 using SceneCost = SceneNumbers<SceneCounter, kSceneCounterCount>;
 
 /// Memory by table [bytes], capacity included: see Simulation::footprint().

@@ -1,31 +1,25 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The paper's simulation: spheres that roam, stand on a terrain, bounce off each other, sweep, sleep, and
-// are looked at. It runs the effects that the scene declares, and no others. After Hastings, Mesit and Guha,
-// "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005.
+// The paper's simulation: spheres that roam, stand on a terrain, bounce, sweep, sleep, and are looked at. After
+// Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005.
 //
-//     SceneEffects effects;
-//     effects.motion.emplace();
-//     effects.pairs.emplace();
-//     effects.response.emplace();
 //     Simulation<float> simulation(effects);
 //     BodyId ball = simulation.add({.position = {0, 5, 0}, .velocity = {1, 0, 0}});
 //     simulation.advance(1.0F / 60);
 //
-// Undeclared  An effect that is not declared has no phase, no table, no cost, and no branch in a loop. A
-//             call for it throws UndeclaredEffect. Rotation and friction run only under Bullet.
-// Kinds       Motion, terrain, response, sweep and sleeping decide where bodies are, to the last bit,
-//             whatever else is declared. The other effects only look: what each of them finds depends on
-//             where bodies are, and on its own settings.
-// Bodies      A body takes part in the effects that it is added with, as far as these are declared. A body
-//             without motion stands for ever, and others bounce off it. A body without response is a sensor.
-// Threads     Const members may run at the same time. Everything else needs the simulation for itself.
-// Failure     Where memory runs out in advance(), some bodies may have moved; the next frame goes on, and
-//             tells all pairs as born. Where it runs out in add() or remove(), nothing has changed.
+// Undeclared  An undeclared effect costs nothing, not even a branch in a loop. A call that needs it throws
+//             UndeclaredEffect. Rotation and friction run only under Bullet.
+// Exact       Motion, terrain, response, sweep and sleeping decide the positions of bodies, to the last bit, whatever
+//             else is declared, on any number of threads. The other effects only look.
+// Bodies      Each takes part in its own effects, if they are declared. Without motion it stands still, and others
+//             bounce off it. Without response it is a sensor.
+// Threads     Const members may run at the same time. All else needs the simulation for itself.
+// Failure     If memory runs out in advance(), some bodies may have moved; the next frame works, and reports all
+//             pairs as born. In add() and remove(), nothing has changed.
 // Units       metres, seconds
-// Misuse      An id of no body, and a time step that is negative or not finite, are asserted. Without
-//             assertions, a call with an id of no body throws std::out_of_range.
+// Misuse      Asserted: ids are valid, and time steps finite and not negative. Else invalid ids throw
+//             std::out_of_range.
 
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/grid.hpp>
@@ -49,7 +43,7 @@
 
 namespace hashphase {
 
-/// A value that names one body of one simulation; zero is null. `index` is that of the body's proxy.
+/// Names one body of one simulation; zero is null. `index` is its proxy's index.
 struct BodyId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
@@ -59,18 +53,18 @@ struct BodyId {
     friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;
 };
 
-/// A sphere, as it is added.
+/// A sphere to add.
 template <class Scalar>
 struct Body {
     Vector3<Scalar> position = Vector3<Scalar>::Zero();  ///< of the centre [m]
     Scalar radius = 1;                                   ///< [m]
     Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  ///< [m/s]; kept if motion is declared
     EffectSet effects = EffectSet::all();                ///< what the body takes part in
-    std::uint32_t group = 0;  ///< in which the radar counts the body; kept if the radar is declared
+    std::uint32_t group = 0;  ///< in the radar; kept if the radar is declared
     bool isAsleep = false;    ///< at first; kept if sleeping is declared
 };
 
-/// Runs frames of spheres: what is declared, and nothing else.
+/// Runs frames of spheres, with the declared effects.
 template <class Scalar>
 class HASHPHASE_EFFECTS_TEMPLATE_EXPORT Simulation {
 public:
@@ -82,36 +76,32 @@ public:
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
-    /// Goes on with another declaration. Tables of new effects appear; tables of effects that are not
-    /// declared any more are freed. Bodies stay where they are.
+    /// Changes the declaration. Makes and frees tables of effects. Bodies stay.
     ///
-    /// motion     new: all bodies stand still
-    /// sleeping   new: all bodies are awake
-    /// radar      new: all bodies are in group 0
-    /// terrain    with another TerrainEffect::up: there are no triangles
-    /// pairs      new: all pairs are told as born
-    /// the grid   new, or with another GridConfig: all bodies are filed again. Old ProxyIds are not valid any
-    ///            more, all pairs are told as born, and proxies in a zone enter it again.
+    ///     motion     new: all bodies stand still
+    ///     sleeping   new: all bodies are awake
+    ///     radar      new: all bodies are in group 0
+    ///     terrain    another TerrainEffect::up: no triangles are left
+    ///     pairs      new: all pairs are reported as born
+    ///     the grid   new, or another GridConfig: old ProxyIds are invalid, all pairs are reported as born, and
+    ///                proxies in a zone enter it again
     ///
-    /// Throws std::invalid_argument with simulationError(effects); then nothing has changed. Throws
-    /// std::bad_alloc; then nothing has changed, or the next call makes what is missing. Cost: up to that of
-    /// adding all bodies.
+    /// Throws std::invalid_argument with simulationError(effects); then nothing has changed. Throws std::bad_alloc;
+    /// then nothing has changed, or the next call completes the change. Cost: at most as adding all bodies.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
 
     // --- Bodies ----------------------------------------------------------------------------------
 
-    /// Adds a sphere. Where memory runs out, it adds nothing. Cost: O(1) amortised, and one look at all
-    /// bodies in the next frame.
+    /// Adds a sphere. Cost: O(1) amortised, and a pass over all bodies in the next frame.
     BodyId add(const Body<Scalar>& body);
 
-    /// Removes a body; its id is never valid again. Cost: as add().
+    /// Removes a body. Its id is never valid again. Cost: as add().
     void remove(BodyId id);
 
-    /// Whether the id names a body that was not removed.
+    /// Returns whether the id names a body that was not removed.
     [[nodiscard]] bool contains(BodyId id) const noexcept;
-    /// Number of bodies.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
     /// The centre [m]. References to positions and velocities are valid until the next add() or declare().
@@ -123,75 +113,69 @@ public:
     [[nodiscard]] const Point& velocity(BodyId id) const;
     void setVelocity(BodyId id, const Point& velocity);
 
-    /// True when the body takes part in motion and stands still because it sleeps. Needs sleeping.
+    /// Returns whether the body takes part in motion and sleeps. Needs sleeping.
     [[nodiscard]] bool isAsleep(BodyId id) const;
 
-    /// Puts the centre of the body at `position` [m] at once. The body wakes, and does not sweep there.
+    /// Moves the centre of the body to `position` [m] at once. The body wakes, and does not sweep there.
     void setPosition(BodyId id, const Point& position);
 
-    /// The body of a proxy that an event or a query names; null for a proxy that is no body here.
+    /// Returns the body of a proxy; null if the proxy is no body here.
     [[nodiscard]] BodyId bodyOf(ProxyId id) const;
 
     // --- Scene -----------------------------------------------------------------------------------
 
-    /// What bodies stand on: add triangles here. Needs terrain. Bodies that sleep on what is changed or removed
-    /// sleep on: a ChangedGround tells who stands there, and setPosition() to where they are wakes them.
+    /// The triangles that bodies stand on. Needs terrain. Bodies that sleep on changed or removed triangles stay
+    /// asleep: find them by a ChangedGround, and wake them by setPosition() to their place.
     [[nodiscard]] Terrain<Scalar>& ground();
 
-    /// Set view, interest, zones and colours here, and read what was found. Bodies beyond the interest radius
-    /// of sleeping sleep.
+    /// Set view, interest, zones and colours here, and read results. Bodies beyond sleeping's interest radius sleep.
     [[nodiscard]] Observers<Scalar>& observers() noexcept { return observers_; }
     [[nodiscard]] const Observers<Scalar>& observers() const noexcept { return observers_; }
 
-    /// The grid of all bodies, as of the last frame. While no body takes part in one of kGridEffects, the
-    /// grid keeps the boxes of the last frame in which one did. Needs one of kGridEffects.
+    /// The grid of all bodies, as of the last frame. It keeps old boxes while no body takes part in one of
+    /// kGridEffects. Needs one of kGridEffects.
     [[nodiscard]] const Grid<Scalar>& grid() const;
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Simulates `seconds` [s] in one step. Returns the cost. The result does not depend on `parallelFor`.
+    /// Simulates `seconds` [s] in one step. Returns the cost.
     const SceneCost& advance(Scalar seconds, ParallelFor parallelFor = serialFor);
 
-    /// What the last frame cost, including what was asked, woken and moved between the frame before and it.
+    /// Cost of the last frame, with the calls between the frame before and it.
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
-    /// The names of a frame's phases, in their order: "move", "pair", "respond", "observe" ...
+    /// Names of a frame's phases, in order: "move", "pair", "respond", "observe" ...
     [[nodiscard]] std::vector<std::string_view> phases() const;
 
-    /// Calls `watch` after each phase with the phase's name, for a profiler. Calls it after each part of
-    /// "observe" too, with the name of the part's effect; "observe" then is the rest. An empty function ends
-    /// the calls.
+    /// Calls `watch` with the name after each phase, for a profiler; also after each part of "observe", with its
+    /// effect's name: "observe" is then the rest. An empty function ends the calls.
     void watchPhases(std::function<void(std::string_view)> watch);
 
-    /// Lets two bodies bounce off each other if they touch and approach, as a frame does with its own pairs:
-    /// for pairs that another broadphase has found. Returns whether they bounced; bodies without response
-    /// never do. Called after advance() without response for all pairs that touch, sorted by the
-    /// bodies' indices, it has the same result as a frame with response, to the last bit. For `restitution`
-    /// see ResponseEffect. A body and itself are asserted. Needs motion. Cost: O(1).
+    /// Lets two bodies bounce if they touch and approach, for pairs from another broadphase. Returns whether they
+    /// bounced; bodies without response never do. Called after advance() for all touching pairs, sorted by the
+    /// bodies' indices, it replaces response, to the last bit. `restitution`: see ResponseEffect. Needs motion.
+    /// Asserted: the bodies differ. Cost: O(1).
     bool collide(BodyId first, BodyId second, double restitution = 1);
 
-    /// Pairs that were born and died in the last frame. Valid until the next one. Needs pairs.
+    /// Births and deaths of pairs in the last frame. Valid until the next one. Needs pairs.
     [[nodiscard]] const PairChanges& pairChanges() const;
 
-    /// Number of pairs as of the last frame. Needs pairs.
+    /// Number of pairs in the last frame. Needs pairs.
     [[nodiscard]] std::size_t pairCount() const;
 
-    // --- When it is asked for --------------------------------------------------------------------
+    // --- On request ------------------------------------------------------------------------------
 
-    /// As Observers::pick() and Observers::select(), over the bodies of this simulation.
+    /// As Observers::pick() and Observers::select(), over this simulation's bodies.
     [[nodiscard]] Picked<Scalar> pick(const RayRegion<Scalar>& ray);
     QueryCost select(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                      std::vector<ProxyId>& selected,
                      Containment containment = Containment::touching);
 
-    /// Returns the bytes of each table, capacity included: exactly 0 for each table of an effect that is not
-    /// declared. Cost: O(zones).
+    /// Returns the bytes of each table, capacity included: exactly 0 for undeclared effects. Cost: O(zones).
     [[nodiscard]] SceneFootprint footprint() const;
 
-    /// Says which invariant is broken, in a sentence; empty when all hold (ask after advance()):
-    /// - Those of the grid and the sweeps, and of the pairs in a frame in which no body swept.
-    /// - Each body's proxy has the body's index and box.
-    /// - Contacts are the present pairs, where some body responds.
+    /// Returns the broken invariant in a sentence; empty if all hold. Call it after advance(). In a frame in which a
+    /// body swept, pairs are not checked.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -281,7 +265,7 @@ private:
     detail::FixedList<Phase, 16> phases_;
     bool stockIsStale_ = true;
 
-    // Bodies by index; those without one have an even generation.
+    // Bodies by index; an even generation means no body.
     std::vector<Point> positions_;
     std::vector<Scalar> radii_;
     std::vector<EffectSet> effectsOf_;
@@ -308,12 +292,12 @@ private:
     Scalar farthestMove_ = 0;     // of a corner of a box
     bool changedOutside_ = true;  // since the last frame, by other than advance()
     SceneCost cost_;
-    SceneCost between_;  // what happened since, which the next frame's has as well
+    SceneCost between_;  // work since then, part of the next frame's cost
     std::function<void(std::string_view)> watch_;
 };
 
-/// Says in a sentence why a Simulation cannot run the declaration: as effectsError(), and for effects that
-/// only Bullet runs. Empty when it can.
+/// Returns in a sentence why a Simulation cannot run the declaration: as effectsError(), and for effects that only
+/// Bullet runs. Empty if it can.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string simulationError(const SceneEffects& effects);
 
 extern template class Simulation<float>;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
+// The exception for calls that need an effect which the scene does not declare.
+
 #include <integration/effects/effect.hpp>
 #include <integration/effects/export.hpp>
 
@@ -9,14 +11,13 @@
 
 namespace hashphase {
 
-/// Thrown by a call for an effect that the scene does not declare; the call has done nothing. what() names
-/// the call and the effect.
+/// Thrown by a call that needs an undeclared effect; the call has done nothing. what() names the call and the effect.
 class HASHPHASE_EFFECTS_EXPORT UndeclaredEffect : public std::logic_error {
 public:
-    /// `call` is the function that was called: "colours()".
+    /// `call` is the called function, such as "colours()".
     UndeclaredEffect(Effect effect, std::string_view call);
 
-    /// For a call that needs any one of these effects; effect() is the first of them. `oneOf` is not empty.
+    /// For a call that needs one of these effects; effect() is the first of them. `oneOf` is not empty.
     UndeclaredEffect(EffectSet oneOf, std::string_view call);
 
     /// The effect to declare.

@@ -3,29 +3,20 @@
 
 // A grid over the processes of an MPI program: exact pairs and queries over all of them, each pair once.
 //
-//     DistributedGrid<float> grid(MPI_COMM_WORLD);             // by all ranks together
-//     const ProxyId proxy = grid.add(GlobalId{number}, box);   // on any rank
-//     grid.move(proxy, box);                                   // for what lives here and has moved
-//     const RankChanges changes = grid.update();               // by all ranks together, once a frame
-//     for (const ProxyPair& pair : changes.pairs.born) { ... }
-//
-// Objects    live on the rank that owns the place of their min corner: see rank_grid.hpp for objects, ghosts,
-//            payloads, pairs and what counts as of when, which are the same here. changes.departed and .arrived tell
-//            which objects have moved between ranks: send along what of them is not in the payload.
-// Balance    The parts of space follow the work: when the slowest rank has a set share more of it than the mean,
-//            update() cuts space again.
-// Together   The constructor, update() or begin() and end(), ask(), sendHome(), pairSum() and the destructor are
-//            called by all ranks in the same order. All else is local.
-// Failure    RankError on all ranks, with a sentence that says which rank has given up, and why: it was left by an
-//            exception; ranks have other configurations; another rank has not answered for
-//            DistributedConfig::patience, as it hangs or makes other calls; a message is not what it says. The grid
-//            is of no more use then, and every further call of all ranks together throws that sentence; MPI_Abort()
-//            ends the program. The MPI library ends the program by itself where a process dies.
-// Misuse     begin(), end(), ask(), sendHome() and pairSum() in another order, and ask() or pairSum() after a change:
-//            RankError on all ranks. Destroy the grid before MPI_Finalize(), and not between begin() and end().
-// Threads    Everything from the thread that may call MPI (MPI_THREAD_FUNNELED). Queries of here().grid() may run on
-//            several threads.
-// Machines   all of one kind: numbers travel as they lie in memory
+// Objects   See rank_grid.hpp for objects, ghosts, payloads, pairs, and when changes are visible. changes.departed
+//           and .arrived list objects that moved between ranks: send their data that is not in the payload.
+// Balance   If the slowest rank has too much of the work, update() cuts space again.
+// Together  All ranks call the constructor, update() or begin() and end(), ask(), sendHome(), pairSum() and the
+//           destructor in the same order. All other calls are local.
+// Failure   These calls throw RankError on all ranks, which names the rank and the reason: an exception left the
+//           grid's scope, configurations differ, no answer came within DistributedConfig::patience, or a message is
+//           invalid. The grid is then unusable: they throw again. Call MPI_Abort(). If a process dies, the MPI
+//           library ends the program.
+// Misuse    RankError on all ranks: calls in another order, and ask() or pairSum() after a change. Destroy the grid
+//           before MPI_Finalize(), and not between begin() and end().
+// Threads   Call from the thread that may call MPI (MPI_THREAD_FUNNELED). Queries of here().grid() may run on
+//           several.
+// Machines  All of one kind: numbers travel as they are in memory.
 
 #include <integration/distributed/contributions.hpp>
 #include <integration/distributed/questions.hpp>
@@ -45,50 +36,47 @@
 
 namespace hashphase {
 
-/// Settings, the same on all ranks.
+/// Settings, equal on all ranks.
 struct DistributedConfig {
     RankGridConfig rankGrid;
 
-    /// Space is cut again when the most loaded rank has more than this times the mean, and more than the error of a
-    /// cut, which is made by a sample: 1.05 up to 128 ranks, 1.13 of 1,024, 1.5 of 16,384. Valid: 1 or more; infinity
-    /// for never but by balanceNow(), and in the first frame.
+    /// Space is cut again if the most loaded rank has more than this times the mean load, and more than the error of
+    /// a cut: 1.04 up to 128 ranks, 1.13 for 1,024, 1.5 for 16,384. Valid: 1 or more; with infinity only in the first
+    /// frame, and by balanceNow().
     double rebalanceAbove = 1.1;
 
-    /// How long to wait for another rank [s], 0 for ever. Make it longer than any rank ever takes between two
-    /// updates.
+    /// How long to wait for another rank [s]; 0: for ever. Choose more than any rank takes between two updates.
     double patience = 600;
 };
 
-/// What the last frame cost this rank, and how evenly it was shared. Questions do not count.
+/// Cost of the last frame on this rank, and its balance. Questions do not count.
 struct DistributedCost {
     RankCost rankGrid;
-    /// The largest load of all ranks, as a multiple of their mean, in the frame before this one.
+    /// Largest load of all ranks, as a multiple of their mean, in the frame before this one.
     double imbalance = 1;
     bool wasRebalanced = false;   ///< space was cut again at the beginning of this frame
     double rebalanceSeconds = 0;  ///< measuring the load, and cutting space
-    double packSeconds = 0;       ///< finding what others have to be told
+    double packSeconds = 0;       ///< finding the changes for other ranks
     double waitSeconds = 0;       ///< for messages of other ranks, in end()
-    double pairSeconds = 0;       ///< taking what they have told, and finding pairs
+    double pairSeconds = 0;       ///< taking their changes, and finding pairs
 };
 
-/// Objects, ghosts and pairs of this rank, and the ways to the others.
+/// This rank's objects, ghosts and pairs, and its messages to other ranks.
 template <class Scalar>
 class HASHPHASE_MPI_TEMPLATE_EXPORT DistributedGrid {
 public:
     using Box = Aabb<Scalar>;
 
-    /// By all ranks of `communicator` together, of which the grid makes a duplicate. The first frame shares space
-    /// out by what there is. Throws RankError on all ranks where their configurations differ, and
-    /// std::invalid_argument where it is bad.
+    /// Duplicates `communicator`. The first frame cuts space by the objects that exist then. Throws RankError on all
+    /// ranks if configurations differ, and std::invalid_argument if they are bad.
     explicit DistributedGrid(MPI_Comm communicator, const DistributedConfig& config = {});
-    /// The same with a partition to begin with, equal on all ranks: that of a run that goes on, or one that the
-    /// program has made of what it knows. Objects that are added where they belong do not have to move.
-    /// Throws RankError on all ranks, too, where it is not equal, or not of as many ranks.
+    /// Begins with a partition, equal on all ranks, such as from an earlier run. Objects that are added on their own
+    /// rank do not have to move. Throws RankError also if partitions differ, or have another number of ranks.
     DistributedGrid(MPI_Comm communicator, const Partition<Scalar>& partition,
                     const DistributedConfig& config = {});
     DistributedGrid(const DistributedGrid&) = delete;
     DistributedGrid& operator=(const DistributedGrid&) = delete;
-    /// Where an exception is under way, tells the other ranks. Else by all ranks together.
+    /// If an exception is under way, tells the other ranks instead of waiting for them.
     ~DistributedGrid();
 
     // --- Objects: see RankGrid -------------------------------------------------------------------
@@ -99,44 +87,43 @@ public:
     void move(ProxyId id, const Box& box) { here_->move(id, box); }
     void remove(ProxyId id) { here_->remove(id); }
     [[nodiscard]] std::span<std::byte> payload(ProxyId id) { return here_->payload(id); }
-    /// This rank's part: objects, ghosts, their payloads and ids, the partition.
+    /// This rank's part: objects, ghosts, payloads, ids and partition.
     [[nodiscard]] const RankGrid<Scalar>& here() const noexcept { return *here_; }
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// begin() and end(). Throws RankError.
+    /// begin() and end().
     RankChanges update(ParallelFor parallelFor = serialFor);
 
-    /// Ends the changes of this frame, and sends what other ranks have to know. While that is under way, until
-    /// end(), the program does other work: it may ask here(), and changes no boxes and no payloads. Throws RankError.
+    /// Ends the changes of this frame, and sends them. Until end(), do other work: query here().grid(), and look up
+    /// ids and payloads in here(). Asserted: no changes, no payload(), and no here().forEachPair(), collect() or
+    /// pairSum().
     void begin();
 
-    /// Takes what other ranks have sent, and returns what has changed. Valid until the next begin(). Throws
-    /// RankError. Cost: RankGrid::finish(), a message to each rank concerned, and a barrier.
+    /// Takes the changes of other ranks. Returns this rank's changes, valid until the next begin(). Cost:
+    /// RankGrid::finish(), a message to each rank concerned, and a barrier.
     RankChanges end(ParallelFor parallelFor = serialFor);
 
-    /// From the next frame on this rank's load is `load` (not negative, asserted; in any unit), such as the
-    /// milliseconds that the whole of its step has taken, in place of RankCost::load; nothing for that again. By all
-    /// ranks or by none: loads are compared.
+    /// Sets this rank's load from the next frame on, in any unit, such as the milliseconds of its whole step; by
+    /// default, or with std::nullopt, RankCost::load. On all ranks or on none, because loads are compared. Asserted:
+    /// not negative.
     void setLoad(std::optional<double> load);
 
-    /// Cuts space again at the beginning of the frame after the next one, whatever the imbalance. One rank will do.
+    /// Cuts space again at the beginning of the frame after the next one, whatever the balance. One rank is enough.
     void balanceNow() noexcept { wantsCut_ = true; }
 
     // --- The whole -------------------------------------------------------------------------------
 
-    /// The way back: sends bytes about ghosts, such as forces, to the ranks where their objects live, and returns
-    /// what others have sent for objects of this rank, sorted by the rank that has sent. By all ranks together, after
-    /// update() and before objects move. Valid until the next call of this or of ask() or begin(). Throws RankError.
-    /// Cost: a message to each rank concerned, and a barrier.
+    /// Sends bytes about ghosts, such as forces, to the ranks of their objects, after update() and before objects
+    /// move. Returns other ranks' contributions to objects of this rank, sorted by rank, valid until the next
+    /// sendHome(), ask() or begin(). Cost: a message to each rank concerned, and a barrier.
     std::span<const Contribution> sendHome(std::span<const Contribution> forGhosts);
 
-    /// Asks all ranks concerned; each rank gets the answers to its own questions. After update(), before the next
-    /// change. Valid until the next call. Throws RankError. Cost: two exchanges of messages, each with a barrier.
+    /// Asks all ranks concerned, after update() and before the next change. Returns the answers to this rank's
+    /// questions, valid until the next call. Cost: two exchanges of messages, each with a barrier.
     Answers<Scalar> ask(std::span<const Question<Scalar>> questions);
 
-    /// The sum over the pairs of all ranks, the same on all of them. After update(), before the next change. Throws
-    /// RankError.
+    /// Returns the sum of the pairs of all ranks, the same on all of them, after update() and before the next change.
     /// Cost: Pairs::collect(), and a sum over all ranks.
     PairSum pairSum();
 
@@ -169,9 +156,9 @@ private:
     DistributedCost cost_;
     int exceptionsAtFirst_;
 
-    // What ranks say of their load at the end of a frame, which all of them know by the beginning of the next one.
+    // Loads at the end of a frame, which all ranks know by the beginning of the next one.
     struct Loads {
-        std::array<std::uint64_t, 2> mine{};  // and whether space is to be cut in any case
+        std::array<std::uint64_t, 2> mine{};  // the load, and whether balanceNow() was called
         std::array<std::uint64_t, 2> most{};
         std::uint64_t sum = 0;
     };

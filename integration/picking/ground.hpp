@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Picking in worlds that are more or less flat: everything stands on the ground, between two heights.
-// Corrects the forms that the paper gives for 2D grids. There a pick asks for the point where the ray meets
-// the ground's plane, and misses objects with a height in front of that point; here it follows the ray
-// between the heights. A drag rectangle is the polygon that its corners cast on the ground.
+// Picking in flat worlds, in which all objects stand on the ground, between two heights.
 //
 // Units     metres
-// Bad data  Empty rays and heights that are NaN or exchanged meet nothing.
+// Bad data  Empty rays, and heights that are NaN or exchanged, meet nothing.
+// Source    The paper's pick for 2D grids takes the point at which the ray meets the ground, and misses tall objects
+//           in front of it. This one follows the ray between the heights.
 
 #include <broadphase/regions.hpp>
 #include <integration/camera/camera.hpp>
@@ -19,20 +18,20 @@
 
 namespace hashphase {
 
-/// Returns the part of a ray between the heights. Between them it meets every box that the whole ray meets,
-/// but for rounding. Its fractions count from where the part begins. Empty when the ray never comes there.
+/// Returns the part of a ray between the heights. It meets every box there that the whole ray meets, except for
+/// rounding. Fractions count from its own beginning. Empty if the ray never gets there.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT RayRegion<Scalar> clipToHeights(
     const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights);
 
-/// Returns the point [m] where the ray meets the plane at this height [m]; nothing for a ray that ends before
-/// the plane, looks over the horizon, or is parallel to the ground.
+/// Returns the point [m] at which the ray meets the plane at this height [m]. Nothing if the ray ends before the
+/// plane, looks above the horizon, or is parallel to the ground.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT std::optional<Vector3<Scalar>> groundPoint(
     const RayRegion<Scalar>& ray, std::type_identity_t<Scalar> height = 0, UpAxis up = UpAxis::y);
 
-/// Returns the part of the ground under a rectangle that is dragged on the screen (see drag_selection.hpp and
-/// ground_footprint.hpp). Select by its region(), which counts the air above the ground too, as on a map.
+/// Returns the ground under a rectangle dragged on the screen (drag_selection.hpp, ground_footprint.hpp). Select by
+/// its region(), which includes the air above the ground.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline GroundFootprint<Scalar> dragFootprint(
     const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Runs the loops of the grid on the threads of oneTBB (2021 or newer). Link with TBB::tbb.
+// Runs the grid's loops on the threads of oneTBB (2021 or newer). Link TBB::tbb.
 
 #include <broadphase/parallel_for.hpp>
 
@@ -13,8 +13,8 @@
 
 namespace hashphase {
 
-/// A ParallelFor: pairs.update(filter, hashphase::tbbFor). Idle threads sleep. Loops are cut evenly: what a thread
-/// has written in one of them it mostly reads in the next, from its own cache.
+/// A ParallelFor: pairs.update(filter, hashphase::tbbFor). Idle threads sleep. Loops are cut evenly, so that a thread
+/// mostly reads from its own cache what it wrote in an earlier loop.
 inline void tbbFor(std::size_t count, std::size_t grain, LoopBody body) {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(grain, 1)),

@@ -1,38 +1,28 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The ground: triangles that stand still, filed in the grid once, each by its box. Says how high the
-// ground is below a point, and where a sphere rests on it. After the object-terrain test of Hastings,
-// Mesit and Guha, which holds on flat ground; here a sphere rests on slopes, edges and corners too.
-// Triangles come, change and go one by one or in chunks, at the cost of those that do.
+// The ground: static triangles in a grid, the height of the ground below a point, and where a sphere rests on it.
 //
-//     Terrain<float> terrain(grid);
-//     terrain.add(corners);
-//     if (const auto ground = terrain.surfaceBelow(point)) { point.y() = ground->height; }
-//
-// A frame    Change the ground, then ask; ask about many points in one call. Where the ground has changed, and
-//            what stands there, says ChangedGround (changed_ground.hpp).
-// Numbers    A triangle keeps its number until it is removed. Then the number is free, and a later triangle may
-//            take it. add() needs free numbers side by side: chunks of one size take again what others left; chunks
-//            of different sizes leave gaps, so that size() stays somewhat above the most triangles at a time. A free
-//            number has NaN corners, no normal and the null proxy, as that of a refused triangle.
-// History    What has left decides nothing: answers are those of a new terrain with the same triangles, under the
-//            same numbers, and the same seam tolerance, which follows the calls that brought these triangles.
-// Others     The grid may hold other proxies, and may change; this costs only time.
-// Exact      A point on an edge or a corner belongs to all triangles there: no point of a closed
-//            surface is lost between two triangles. Heights are found in double precision.
-// Seams      Where meshes that were placed by different transforms meet, their edges differ by rounding. A
-//            point between the edges belongs to the nearest triangle: see seamTolerance(). Wider gaps stay
-//            gaps. A triangle exactly below the point, at about that height, goes before.
-// Units      metres. Heights are coordinates along the axis that is up.
-// Threads    Queries are const and may run on any number of threads. Everything else needs the terrain, its grid
-//            and its ChangedGround for itself.
-// Memory     A query allocates nothing, unless a few points meet hundreds of boxes. A query about more than a
-//            thousand points takes 0.3 MB of the stack. Where it runs out in a call that changes triangles,
-//            nothing has changed.
-// Bad data   Triangles with a bad corner are refused and named; bad points and radii have no ground.
-// Misuse     Corners that do not come in threes, batches of unequal lengths, numbers that no triangle
-//            has, bad tolerances, and more than 2^32 - 2 triangles are asserted. Such a call changes nothing.
+// Frame     Change the ground, then ask about many points in one call. changed_ground.hpp finds the bodies on
+//           changes.
+// Numbers   A triangle keeps its number until it is removed; then a later one may take it. add() takes consecutive
+//           numbers: chunks of one size reuse them, chunks of different sizes leave gaps. A free number looks like a
+//           refused triangle: NaN corners, no normal, and the null proxy.
+// Grid      May hold other proxies, and may change: this costs only time. Removed triangles have no effect on
+//           answers.
+// Exact     A point on an edge or corner belongs to all triangles there: a closed surface has no holes. Heights are
+//           computed in double precision.
+// Seams     Edges of meshes with different transforms differ by rounding. A point between them belongs to the nearest
+//           triangle (seamTolerance()), unless one exactly below has about that height.
+// Units     metres. Heights are coordinates along the axis that is up.
+// Threads   Queries are const and run on any number of threads. All else needs the terrain, its grid and its
+//           ChangedGround for itself.
+// Memory    Queries allocate nothing, unless a few points meet hundreds of boxes. If memory runs out in a change,
+//           nothing has changed.
+// Bad data  Triangles with a bad corner are refused and listed. Bad points and radii have no ground.
+// Misuse    Asserted, and changes nothing: corners not in threes, spans of unequal lengths, numbers without a
+//           triangle, bad tolerances, more than 2^32 - 2 triangles.
+// Source    After the object-terrain test of Hastings, Mesit and Guha for flat ground, extended to slopes and edges.
 
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/function_ref.hpp>
@@ -58,7 +48,7 @@
 
 namespace hashphase {
 
-/// Where an object stands.
+/// The ground at a point.
 template <class Scalar>
 struct Ground {
     std::uint32_t triangle = 0;  ///< number of the triangle
@@ -67,18 +57,17 @@ struct Ground {
     friend bool operator==(const Ground&, const Ground&) = default;
 };
 
-/// What Terrain::add() and replace() did. Triangles are numbered in the order in which they were handed in,
-/// including refused ones.
+/// Result of Terrain::add() and replace(). Numbers follow the order of the given triangles, refused ones included.
 struct AddedTriangles {
     std::uint32_t first = 0;             ///< number of the first triangle
-    std::uint32_t count = 0;             ///< how many were handed in
+    std::uint32_t count = 0;             ///< number of given triangles
     std::vector<std::uint32_t> refused;  ///< numbers of triangles with a bad corner
 };
 
 template <class Scalar>
 class HASHPHASE_TERRAIN_TEMPLATE_EXPORT ChangedGround;
 
-/// Triangles that stand still, and how high the ground is.
+/// Static triangles, and the height of the ground.
 template <class Scalar>
 class HASHPHASE_TERRAIN_TEMPLATE_EXPORT Terrain {
 public:
@@ -86,67 +75,63 @@ public:
     using Corners = std::array<Point, 3>;
     using Found = std::optional<Ground<Scalar>>;
 
-    /// Coordinates and radii up to this are good [m]: in single precision all finite ones.
+    /// Largest good coordinate and radius [m]: in single precision, all finite ones are good.
     static constexpr double kFarthest = 1e70;
 
     /// Keeps a reference to the grid, which must outlive the terrain.
     explicit Terrain(Grid<Scalar>& grid, UpAxis up = UpAxis::y);
-    /// Removes the terrain's proxies. Destroy each ChangedGround of the terrain first (asserted).
+    /// Removes the terrain's proxies. Asserted: each ChangedGround of the terrain was destroyed.
     ~Terrain();
     Terrain(const Terrain&) = delete;
     Terrain& operator=(const Terrain&) = delete;
 
     // --- Triangles -------------------------------------------------------------------------------
 
-    /// Adds triangles, three corners [m] each. Refuses triangles with a corner that is NaN, infinite or
-    /// farther than kFarthest. Vertical triangles, and those without an area, carry spheres but have no
-    /// height themselves. Either side may be up. They take the lowest numbers that are free side by side, or
-    /// else those from size() on. Cost: O(1) amortised for each triangle, and a step for each run of free
-    /// numbers; where as much was removed before, it allocates nothing.
+    /// Adds triangles, three corners [m] each, with either side up. Refuses triangles with a corner that is NaN,
+    /// infinite or farther than kFarthest. Vertical triangles and triangles without an area carry spheres, but have
+    /// no height. They take the lowest consecutive free numbers, or numbers from size() on. Allocates nothing if as
+    /// much was removed before. Cost: O(1) amortised for each triangle, and a step for each run of free numbers.
     AddedTriangles add(std::span<const Point> corners);
 
-    /// Adds triangles by the places of their corners in `vertices`, three indices each. Also refuses
-    /// triangles with an index beyond the last vertex.
+    /// Adds triangles by indices into `vertices`, three each. Also refuses triangles with an index beyond the last
+    /// vertex.
     AddedTriangles add(std::span<const Point> vertices, std::span<const std::uint32_t> indices);
 
-    /// Sets the corners of the triangles from number `first` on, as many as are handed in; all else is as in
-    /// add(). They keep their numbers, and their proxies, but for those that are refused now or were before.
-    /// An unchanged triangle is computed again, but neither filed nor noted by ChangedGround. All numbers must
-    /// be taken (asserted): for more triangles than before, remove() and add(). Cost: O(1) for each triangle.
-    /// Allocates nothing unless triangles are refused, or were.
+    /// Replaces the corners of triangles from number `first` on, as many as given; otherwise as add(). Triangles keep
+    /// numbers and proxies, unless they are refused now or were before. An unchanged triangle is neither filed nor
+    /// noted by ChangedGround. For more triangles, remove() and add(). Allocates nothing unless triangles are
+    /// refused, or were. Asserted: all numbers are taken. Cost: O(1) for each triangle.
     AddedTriangles replace(std::uint32_t first, std::span<const Point> corners);
     AddedTriangles replace(std::uint32_t first, std::span<const Point> vertices,
                            std::span<const std::uint32_t> indices);
 
-    /// Removes the triangles from number `first` on, and their proxies; refused ones, too. Their numbers are
-    /// free then, and must not be removed or replaced before they are taken again. Cost: O(1) for each
-    /// triangle, and a step for each run of free numbers.
+    /// Removes triangles from number `first` on, refused ones too, and their proxies. Asserted: their numbers are
+    /// taken. Cost: O(1) for each triangle, and a step for each run of free numbers.
     void remove(std::uint32_t first, std::uint32_t count = 1);
 
-    /// Removes all triangles, and their proxies; numbers begin at 0 again.
+    /// Removes all triangles, and their proxies. Numbers begin at 0 again.
     void clear();
 
-    /// Subtracts `shift` [m] from the corners, as Grid::shiftOrigin() does from their boxes. Call it with
-    /// each Grid::shiftOrigin() of the grid. Cost: O(triangles).
+    /// Subtracts `shift` [m] from all corners. Call it with each Grid::shiftOrigin() of the grid, by the same shift.
+    /// Asserted: `shift` is finite. Cost: O(triangles).
     void shiftOrigin(const Point& shift);
 
-    /// All numbers are below it: those of triangles, of refused ones, and free ones. Never shrinks until
-    /// clear().
+    /// Limit of all numbers: of triangles, refused and free ones. Shrinks only in clear().
     [[nodiscard]] std::uint32_t size() const noexcept {
         return static_cast<std::uint32_t>(triangles_.size());
     }
 
-    /// The corners [m] of a triangle, in the order in which they were handed in; NaN for a refused one.
+    /// The corners [m] of a triangle, in the given order; NaN for a refused one.
     [[nodiscard]] Corners corners(std::uint32_t triangle) const;
 
-    /// Unit normal of the side that is up; zero where the triangle has no heights.
+    /// Unit normal of the side that is up; zero if the triangle has no height, or is too thin.
     [[nodiscard]] Point normal(std::uint32_t triangle) const;
 
-    /// The triangle's proxy in the grid; null for a refused one.
+    /// The triangle's proxy; null for a refused one.
     [[nodiscard]] ProxyId proxy(std::uint32_t triangle) const;
 
-    /// The number of the triangle that has the proxy; nothing where the proxy is not the terrain's. Leads from
-    /// what a query of the grid finds to the triangle. Cost: O(1).
+    /// Returns the number of the triangle with this proxy, such as one that a query found. Nothing if the proxy is
+    /// not the terrain's. Cost: O(1).
     [[nodiscard]] std::optional<std::uint32_t> triangleOf(ProxyId id) const noexcept {
         const std::uint32_t number = numberOf(id);
         return number != kNone && proxies_[number] == id ? std::optional(number) : std::nullopt;
@@ -154,21 +139,18 @@ public:
 
     // --- Seams -----------------------------------------------------------------------------------
 
-    /// A point beside all triangles belongs to the nearest one within `tolerance` [m], seen from above. 0: never.
-    /// nullopt: automatic, as by default: seamTolerance() then follows the triangles. Set it where corners were
-    /// computed from larger numbers than seamTolerance() knows, or where it must not depend on which triangles
-    /// come and go. Gaps up to twice the tolerance are closed, and a ledge reaches out by the tolerance. NaN,
-    /// negative numbers and those above kFarthest are asserted, and change nothing. clear() keeps it. Cost: O(1).
+    /// Sets how far outside of all triangles a point may be [m] and still belong to the nearest; 0: never.
+    /// std::nullopt, the default: automatic, see seamTolerance(). Set it if corners come from larger numbers than
+    /// seamTolerance() knows, or if it must not depend on the present triangles. Closes gaps up to twice the
+    /// tolerance; ledges reach out by it. clear() keeps it. Asserted: 0 to kFarthest; otherwise nothing changes.
+    /// Cost: O(1).
     void setSeamTolerance(std::optional<Scalar> tolerance);
 
-    /// Returns the tolerance [m] at the point: what was set, or the automatic one, by which rounding may move an
-    /// edge near the point. That is 8 epsilon of Scalar times a sum of two numbers. The first is the point's larger
-    /// coordinate along the ground, now or before a shift of the origin. The second is the largest extent plus
-    /// height of the triangles of one add() or replace(), rounded up to a power of two, at most 16 km. It counts
-    /// each add() or replace() of which a triangle is left, with all that it brought, and the shifts since.
-    /// (A corner placed by a transform is six sums and products of such numbers along two axes, each off by half
-    /// an epsilon.) In single precision a twentieth of a millimetre for chunks of 32 m near the origin, 1 mm at
-    /// 1 km; in double precision 2 pm.
+    /// Returns the tolerance [m] at the point: the set one, or the automatic one, by which rounding may move a nearby
+    /// edge. The automatic one is 8 epsilon of Scalar times a sum: the point's larger coordinate along the ground,
+    /// plus the largest extent and height of the triangles of one add() or replace() that has some left, rounded up
+    /// to a power of two, at most 16 km. Shifts of the origin do not lower it. In single precision 0.05 mm for chunks
+    /// of 32 m near the origin, 1 mm at 1 km; in double precision 2 pm.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
         return setTolerance_
                    ? *setTolerance_
@@ -178,37 +160,31 @@ public:
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// Returns the highest surface at or below the point [m], on the vertical line through it; of several
-    /// equally high ones the triangle with the smallest number. Nothing outside of all triangles, and below
-    /// them. A second call at the returned height returns that height again. Adds the query's cost to `cost`.
-    /// Cost: the triangles whose boxes the line below the point meets; at most one test for each proxy of the
-    /// grid.
+    /// Returns the highest surface at or below the point [m], on its vertical line; of equally high ones the triangle
+    /// with the smallest number. Nothing outside of or below all triangles. Asked again at the returned height,
+    /// returns it again. Adds the query's cost to `cost`. Cost: Grid::visit() of the line below the point.
     [[nodiscard]] Found surfaceBelow(const Point& point, QueryCost* cost = nullptr) const;
 
-    /// Returns the height of the centre of a sphere that rests on the ground, and the triangle that carries
-    /// it, when the sphere may move only along the vertical line through `center` [m].
-    /// Each triangle carries the sphere at one height, and touches it at one point. The result is the highest
-    /// of these heights among triangles whose touching points are not above `center`: a bridge overhead does
-    /// not count, and a sphere sunk into a hill is lifted. On a slope with the unit normal n, it is the
-    /// height of the ground + radius / n_up; with radius 0 the ground itself. Nothing where no triangle is
-    /// below within the radius, and for a radius [m] that is negative, NaN or above kFarthest. Cost: the
-    /// triangles whose boxes overlap the square column below the sphere; at most one test for each proxy of
-    /// the grid.
+    /// Returns the height of the centre of a sphere that rests on the ground, and the triangle that carries it. The
+    /// sphere may move only along the vertical line through `center` [m]. The result is the highest rest on triangles
+    /// that it touches at or below `center`: a bridge overhead does not count, and a sunken sphere is lifted. On a
+    /// slope with unit normal n, it is the height of the ground + radius / n_up. Nothing if no triangle is below
+    /// within the radius, or the radius [m] is negative, NaN or above kFarthest. Adds the query's cost to `cost`.
+    /// Cost: Grid::visit() of the square column below the sphere.
     [[nodiscard]] Found restingHeight(const Point& center, Scalar radius,
                                       QueryCost* cost = nullptr) const;
 
-    /// surfaceBelow() for many points: found[i] is that of points[i]. The result does not depend on
-    /// `parallelFor`. Returns the cost. Fastest when points near each other follow each other. Cost: at most
-    /// as surfaceBelow() for each point. Takes 300 kB of the stack for 1024 points and more, 10 kB for fewer.
+    /// surfaceBelow() for many points, found[i] for points[i]. Fastest if neighbouring points follow each other.
+    /// Returns the cost. Cost: at most as surfaceBelow() for each point; 10 kB of the stack, 300 kB from 1,024 points
+    /// on.
     QueryCost surfacesBelow(std::span<const Point> points, std::span<Found> found,
                             ParallelFor parallelFor = serialFor) const;
 
-    /// restingHeight() for many spheres: found[i] is that of centers[i] and radii[i]. Otherwise as
-    /// surfacesBelow().
+    /// restingHeight() for many spheres, found[i] for centers[i] and radii[i]. Otherwise as surfacesBelow().
     QueryCost restingHeights(std::span<const Point> centers, std::span<const Scalar> radii,
                              std::span<Found> found, ParallelFor parallelFor = serialFor) const;
 
-    /// Bytes held, capacity included, without those of the grid.
+    /// Bytes held, capacity included, without the grid's.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:
@@ -226,7 +202,7 @@ private:
     static constexpr std::uint32_t kTilesPerSide = 128;
     static constexpr std::size_t kTiles = std::size_t{kTilesPerSide} * kTilesPerSide;
 
-    /// The tile in which the point lies, of a grid of tiles over all of the ground.
+    /// The tile of a point, in a grid of tiles over all of the ground.
     [[nodiscard]] std::uint16_t tileOf(const Point& point) const noexcept {
         const auto along = [&](Eigen::Index axis) {
             constexpr auto last = static_cast<Scalar>(kTilesPerSide - 1);
@@ -241,7 +217,7 @@ private:
     QueryCost searchInOrder(std::size_t count, const NumberOf& numberOf, std::span<Found> found,
                             ParallelFor parallelFor, const MakeSearch& makeSearch) const;
 
-    // Not inlined, so that few points take none of its 300 kB of the stack. (Clang looks for this here alone.)
+    // Not inlined, so that few points take none of its 300 kB of the stack. (Clang looks for this here only.)
     template <class Search, class MakeSearch>
     [[HASHPHASE_NO_INLINE]] QueryCost searchByTiles(std::span<const Point> points,
                                                     std::span<Found> found, ParallelFor parallelFor,
@@ -271,8 +247,8 @@ private:
     [[nodiscard]] Scalar along(const Point& point) const noexcept {
         return std::max(std::abs(point[alongX_]), std::abs(point[alongZ_]));
     }
-    /// Sets the column to all that is no higher than the point, and no farther beside it than `reach`,
-    /// which has room for rounding.
+    /// Sets the column to everything at most as high as the point and at most `reach` to its sides, with room for
+    /// rounding.
     void setColumn(Aabb<Scalar>& column, const Point& point, Scalar reach) const noexcept {
         column.min() = point.array() - reach;
         column.max() = point.array() + reach;
@@ -280,7 +256,7 @@ private:
         column.max()[up_] = point[up_];
     }
 
-    /// The triangle of a proxy, or kNone where it is someone else's.
+    /// The triangle of a proxy, or kNone if it is not the terrain's.
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t numberOf(ProxyId id) const noexcept {
         return id.index < triangleOfProxy_.size() ? triangleOfProxy_[id.index] : kNone;
     }
@@ -289,7 +265,7 @@ private:
     int up_;
     int alongX_;  // the other two axes
     int alongZ_;
-    // Of all triangles, and some that were; decides only in which order many points are looked at.
+    // Of all triangles, and some that were; decides only the order in which many points are processed.
     Aabb<Scalar> bounds_;
     Aabb<Scalar> nextBounds_;  // of those below boundsNext_, and what has come since it was 0
     std::uint32_t boundsNext_ = 0;
@@ -300,7 +276,7 @@ private:
     std::vector<detail::GroundTriangle<Scalar>> triangles_;
     std::vector<ProxyId> proxies_;  // by triangle; null of refused ones
     std::vector<std::uint32_t>
-        triangleOfProxy_;  // by ProxyId::index: nobody else's while ours lives
+        triangleOfProxy_;  // by ProxyId::index, which no other proxy has meanwhile
     std::vector<ChangedGround<Scalar>*> changed_;
 };
 
