@@ -30,77 +30,36 @@ TEST(Switching, ProgramPrintsTheSameBeforeAndAfter) {
     EXPECT_EQ(printedBy(&after::main), printed);
 }
 
-TEST(Switching, EagerGroupsGetTheirPairsAtOnce) {
-    constexpr int kTriggerGroup = 64;
-#include <switching_3.inl>
-    for (const int group : {int{btBroadphaseProxy::SensorTrigger}, int{kTriggerGroup}}) {
-        EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
-        broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, group, -1, nullptr);
-    }
-    EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 1);
-}
-
-TEST(Switching, RefilteringRemovesAPairAtOnce) {
+TEST(Switching, CallsAfterChangesEndPairsAndFreeAlgorithms) {
     constexpr int kEnemyGroup = 64;
-    SpatialHashBroadphase broadphase;
-    FallingSphere sphere;
-    btRigidBody& body = sphere.body;
-    btDispatcher& dispatcher = sphere.dispatcher;
-    broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, kEnemyGroup, -1, nullptr);
-    body.setBroadphaseHandle(
-        broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, -1, nullptr));
-    broadphase.calculateOverlappingPairs(nullptr);
-    EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 1);
-    {
-#include <switching_4.inl>
-    } EXPECT_EQ(broadphase.getOverlappingPairCache()->getNumOverlappingPairs(), 0);
-}
-
-TEST(Switching, ChangedShapesKeepTheirPairsButNoAlgorithm) {
     FallingSphere sphere;
     btSphereShape larger(2);
     btCollisionObject other;
+    btCollisionObject enemy;
     other.setCollisionShape(&sphere.shape);
+    enemy.setCollisionShape(&sphere.shape);
     SpatialHashBroadphase broadphase;
     btRigidBody& body = sphere.body;
     btDispatcher& dispatcher = sphere.dispatcher;
     btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &sphere.solver, &sphere.configuration);
     world.addRigidBody(&body);
-    world.addCollisionObject(&other);
+    world.addCollisionObject(&other, btBroadphaseProxy::StaticFilter);
+    world.addCollisionObject(&enemy, kEnemyGroup, btBroadphaseProxy::DefaultFilter);
     world.performDiscreteCollisionDetection();
-    btBroadphasePair* pair =
-        world.getPairCache()->findPair(body.getBroadphaseProxy(), other.getBroadphaseHandle());
-    ASSERT_NE(pair, nullptr);
-    ASSERT_NE(pair->m_algorithm, nullptr);
-#include <switching_5.inl>
-    EXPECT_EQ(pair->m_algorithm, nullptr);
-    EXPECT_EQ(world.getPairCache()->getNumOverlappingPairs(), 1);
+    const auto pairWith = [&](btCollisionObject& object) {
+        return world.getPairCache()->findPair(body.getBroadphaseProxy(),
+                                              object.getBroadphaseHandle());
+    };
+    ASSERT_NE(pairWith(other), nullptr);
+    ASSERT_NE(pairWith(other)->m_algorithm, nullptr);
+    EXPECT_NE(pairWith(enemy), nullptr);
+#include <switching_3.inl>
+    EXPECT_EQ(pairWith(enemy), nullptr);
+    ASSERT_NE(pairWith(other), nullptr);
+    EXPECT_EQ(pairWith(other)->m_algorithm, nullptr);
+    world.removeCollisionObject(&enemy);
     world.removeCollisionObject(&other);
     world.removeRigidBody(&body);
-}
-
-TEST(Switching, ClosestRayFindsWhatTheWorldFinds) {
-    FallingSphere sphere;
-    SpatialHashBroadphase broadphase;
-    btDiscreteDynamicsWorld world(&sphere.dispatcher, &broadphase, &sphere.solver,
-                                  &sphere.configuration);
-    world.addRigidBody(&sphere.body);
-    const btVector3 from(0, 9, 0);
-    const btVector3 to(0, -9, 0);
-    btCollisionWorld::ClosestRayResultCallback expected(from, to);
-    world.rayTest(from, to, expected);
-#include <switching_6.inl>
-    EXPECT_TRUE(hit.hasHit());
-    EXPECT_EQ(hit.m_closestHitFraction, expected.m_closestHitFraction);
-    world.removeRigidBody(&sphere.body);
-}
-
-TEST(Switching, PairCacheWorksUnderBulletsBroadphase) {
-#include <switching_7.inl>
-    for (int i = 0; i < 2; ++i) {
-        broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, -1, nullptr);
-    }
-    EXPECT_EQ(pairCache.getNumOverlappingPairs(), 1);
 }
 
 }  // namespace

@@ -7,8 +7,23 @@
 namespace hashphase::test {
 namespace {
 
-TEST(TroubleshootingPage, AssertionsThrow) {
+TEST(TroubleshootingPage, GhostsListAtOnce) {
+    FallingSphere sphere;
+    SpatialHashBroadphase broadphase;
+    btGhostObject ghost;
+    ghost.setCollisionShape(&sphere.shape);
+    {
+        btCollisionWorld world(&sphere.dispatcher, &broadphase, &sphere.configuration);
+        world.addCollisionObject(&sphere.body);
 #include <troubleshooting_1.inl>
+        EXPECT_EQ(ghost.getNumOverlappingObjects(), 1);
+        world.removeCollisionObject(&ghost);
+        world.removeCollisionObject(&sphere.body);
+    }
+}
+
+TEST(TroubleshootingPage, AssertionsThrow) {
+#include <troubleshooting_2.inl>
     EXPECT_THROW(detail::reportBrokenAssert("condition", "Sentence.", "file", 1), std::logic_error);
     setAssertHandler(nullptr);
 }
@@ -22,25 +37,10 @@ TEST(TroubleshootingPage, NanIsFound) {
     broadphase.createProxy({0, nan, 0}, {1, 1, 1}, 0, &client, 1, -1, nullptr);
     std::vector<void*> reported;
     const auto report = [&](void* object) { reported.push_back(object); };
-#include <troubleshooting_2.inl>
+#include <troubleshooting_3.inl>
     setMessageHandler(nullptr);
     EXPECT_EQ(reported, std::vector<void*>{&client});
     EXPECT_EQ(broadphase.grid().nanCount(), 1U);
-}
-
-TEST(TroubleshootingPage, GhostsListAtOnce) {
-    FallingSphere sphere;
-    SpatialHashBroadphase broadphase;
-    btGhostObject ghost;
-    ghost.setCollisionShape(&sphere.shape);
-    {
-        btCollisionWorld world(&sphere.dispatcher, &broadphase, &sphere.configuration);
-        world.addCollisionObject(&sphere.body);
-#include <troubleshooting_3.inl>
-        EXPECT_EQ(ghost.getNumOverlappingObjects(), 1);
-        world.removeCollisionObject(&ghost);
-        world.removeCollisionObject(&sphere.body);
-    }
 }
 
 TEST(TroubleshootingPage, ThreadsOfYoursAreUsed) {
