@@ -120,6 +120,7 @@ std::span<const Reading> readings() {
         Reading{"zones", [](Seen s) { return s.stage->zones().size(); }},
         Reading{"milliseconds", [](Seen s) { return s.history.medianTotal(); }},
         Reading{"p95", [](Seen s) { return s.history.p95Total(); }},
+        Reading{"worst", [](Seen s) { return s.history.worstTotal(); }},
         Reading{"eyeX", [](Seen s) { return s.pose().eye.x(); }},
         Reading{"eyeY", [](Seen s) { return s.pose().eye.y(); }},
         Reading{"eyeZ", [](Seen s) { return s.pose().eye.z(); }},

@@ -88,23 +88,28 @@ void rightInColumn(const std::string& text) {
     ImGui::TextUnformatted(text.c_str());
 }
 
-/// A table of texts with two numbers each.
-void beginNumbers(const char* name, const char* first, const char* second) {
-    ImGui::BeginTable(name, 3, ImGuiTableFlags_None);
-    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
-    ImGui::TableSetupColumn(first, ImGuiTableColumnFlags_WidthFixed, 60);
-    ImGui::TableSetupColumn(second, ImGuiTableColumnFlags_WidthFixed, 60);
-}
+using Texts = std::vector<std::string>;
 
-void numbersRow(const std::string& text, const std::string& first, const std::string& second,
-                std::optional<ImU32> colour = {}) {
+void numbersRow(const std::string& text, const Texts& numbers, std::optional<ImU32> colour = {}) {
     ImGui::TableNextColumn();
     if (colour) {
         swatch(*colour);
     }
     ImGui::TextUnformatted(text.c_str());
-    rightInColumn(first);
-    rightInColumn(second);
+    for (const std::string& number : numbers) {
+        rightInColumn(number);
+    }
+}
+
+/// A table of texts with numbers, in columns of these names.
+void beginNumbers(const char* name, const Texts& columns) {
+    constexpr float kColumnWidth = 42;  // [pixels]
+    ImGui::BeginTable(name, 1 + static_cast<int>(columns.size()), ImGuiTableFlags_None);
+    ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+    for (const std::string& column : columns) {
+        ImGui::TableSetupColumn(column.c_str(), ImGuiTableColumnFlags_WidthFixed, kColumnWidth);
+    }
+    numbersRow("", columns);
 }
 
 }  // namespace
@@ -137,14 +142,22 @@ void showPhases(const Session& session) {
     }
     drawStack(session);
     const PhaseHistory& history = session.history;
-    beginNumbers("phases", "smoothed", "p95");
-    numbersRow("", "smoothed", "p95");
-    for (std::size_t row = 0; row < history.rows().size(); ++row) {
-        const PhaseHistory::Row& phase = history.rows()[row];
-        numbersRow(std::string(phase.name), fixed(phase.smoothed, 2), fixed(history.p95(phase), 2),
-                   phaseColour(session, row));
+    const auto row = [](const std::string& name, std::initializer_list<double> times,
+                        std::optional<ImU32> colour = {}) {
+        Texts texts;
+        for (const double time : times) {
+            texts.push_back(fixed(time, 2));
+        }
+        numbersRow(name, texts, colour);
+    };
+    beginNumbers("phases", {"median", "p95", "worst"});
+    for (std::size_t i = 0; i < history.rows().size(); ++i) {
+        const PhaseHistory::Row& phase = history.rows()[i];
+        row(std::string(phase.name),
+            {history.median(phase), history.p95(phase), history.worst(phase)},
+            phaseColour(session, i));
     }
-    numbersRow("together", fixed(history.smoothedTotal(), 2), fixed(history.p95Total(), 2));
+    row("together", {history.medianTotal(), history.p95Total(), history.worstTotal()});
     ImGui::EndTable();
 }
 
@@ -152,12 +165,11 @@ void showZones(const Session& session) {
     if (session.stage->zones().empty() || !ImGui::CollapsingHeader("Bullet's profile zones")) {
         return;
     }
-    beginNumbers("zones", "ms", "calls");
-    numbersRow("", "ms", "calls");
+    beginNumbers("zones", {"ms", "calls"});
     for (const ProfileZone& zone : session.stage->zones()) {
         const std::string indent(2 * static_cast<std::size_t>(zone.depth), ' ');
-        numbersRow(indent + std::string(zone.name), fixed(zone.milliseconds, 2),
-                   withThousands(zone.calls));
+        numbersRow(indent + std::string(zone.name),
+                   {fixed(zone.milliseconds, 2), withThousands(zone.calls)});
     }
     ImGui::EndTable();
 }

@@ -12,9 +12,10 @@
 namespace hashphase::demos {
 namespace {
 
-void tellPhase(std::ostream& out, std::string_view name, double median, double p95) {
+void tellPhase(std::ostream& out, std::string_view name, double median, double p95, double worst) {
     out << std::left << std::setw(20) << name << std::right << std::setw(9) << milliseconds(median)
-        << " ms   p95 " << std::setw(8) << milliseconds(p95) << '\n';
+        << " ms   p95 " << std::setw(8) << milliseconds(p95) << "   worst " << std::setw(8)
+        << milliseconds(worst) << '\n';
 }
 
 // The scene that was on stage at the end; of a recording of boxes all objects are bodies, and of a scene file,
@@ -57,9 +58,9 @@ void tellPhases(const Session& session, bool drewPictures, std::ostream& out) {
     const PhaseHistory& history = session.history;
     if (const std::size_t count = history.toldCount(); count > 0) {
         for (const PhaseHistory::Row& row : history.rows()) {
-            tellPhase(out, row.name, history.median(row), history.p95(row));
+            tellPhase(out, row.name, history.median(row), history.p95(row), history.worst(row));
         }
-        tellPhase(out, "together", history.medianTotal(), history.p95Total());
+        tellPhase(out, "together", history.medianTotal(), history.p95Total(), history.worstTotal());
         out << "medians of the last " << (count == 1 ? "frame" : withThousands(count) + " frames")
             << (drewPictures ? ", of a run that drew pictures as well" : "") << '\n';
     }
@@ -87,7 +88,8 @@ void writeNumbers(const Session& session, std::optional<double> framesPerSecond,
     const PhaseHistory& history = session.history;
     for (const PhaseHistory::Row& row : history.rows()) {
         json["phases"][std::string(row.name)] = {{"milliseconds", history.median(row)},
-                                                 {"p95", history.p95(row)}};
+                                                 {"p95", history.p95(row)},
+                                                 {"worst", history.worst(row)}};
     }
     out << textOf(json);
 }

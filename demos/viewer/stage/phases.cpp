@@ -7,7 +7,6 @@
 namespace hashphase::demos {
 
 void PhaseHistory::add(std::span<const PhaseTime> times) {
-    constexpr double kWeight = 0.08;  // of a new frame in what is smoothed
     knowsBeginning_ = knowsBeginning_ && count_ < kFrames;
     for (Row& row : rows_) {
         row.isPresent = false;
@@ -19,12 +18,10 @@ void PhaseHistory::add(std::span<const PhaseTime> times) {
     for (const PhaseTime& time : times) {
         auto row = std::ranges::find(rows_, time.name, &Row::name);
         if (row == rows_.end()) {
-            row = rows_.insert(rows_.end(),
-                               Row{time.name, time.milliseconds, std::deque<float>(count_), true});
+            row = rows_.insert(rows_.end(), Row{time.name, std::deque<float>(count_), true});
         }
         row->isPresent = true;
         row->frames.back() = static_cast<float>(time.milliseconds);
-        row->smoothed += kWeight * (time.milliseconds - row->smoothed);
     }
     std::erase_if(rows_, [](const Row& row) {
         return !row.isPresent && std::ranges::count(row.frames, 0) == std::ssize(row.frames);
@@ -50,14 +47,6 @@ std::deque<float> PhaseHistory::totals() const {
         std::ranges::transform(totals, row.frames, totals.begin(), std::plus());
     }
     return totals;
-}
-
-double PhaseHistory::smoothedTotal() const {
-    double sum = 0;
-    for (const Row& row : rows_) {
-        sum += row.isPresent ? row.smoothed : 0;
-    }
-    return sum;
 }
 
 }  // namespace hashphase::demos

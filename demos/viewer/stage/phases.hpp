@@ -67,7 +67,6 @@ public:
 
     struct Row {
         std::string_view name;
-        double smoothed = 0;       // lately, for who looks on [ms]
         std::deque<float> frames;  // the oldest first; 0 in frames without the phase [ms]
         bool isPresent = false;    // in the last frame
     };
@@ -85,14 +84,15 @@ public:
     /// there is no other.
     [[nodiscard]] std::size_t toldCount() const noexcept { return count_ - firstTold(); }
 
-    /// Of those, the time that half of them do not exceed, and the one that one in twenty does [ms].
+    /// Of those, the time that half of them do not exceed, the one that one in twenty does, and the longest [ms].
     [[nodiscard]] double median(const Row& row) const { return atRank(row.frames, 50); }
     [[nodiscard]] double p95(const Row& row) const { return atRank(row.frames, 95); }
+    [[nodiscard]] double worst(const Row& row) const { return atRank(row.frames, 100); }
 
     /// All phases together [ms].
-    [[nodiscard]] double smoothedTotal() const;
     [[nodiscard]] double medianTotal() const { return atRank(totals(), 50); }
     [[nodiscard]] double p95Total() const { return atRank(totals(), 95); }
+    [[nodiscard]] double worstTotal() const { return atRank(totals(), 100); }
 
 private:
     [[nodiscard]] std::size_t firstTold() const noexcept {

@@ -85,7 +85,8 @@ private:
 TEST_F(Wander, TellsThePhasesOfAFrame) {
     const Outcome told = run("--objects 300 --frames 20");
     EXPECT_EQ(told.code, kExitOk) << told.err;
-    for (const char* word : {"stand", "pair", "culling", "together", "300 bodies", "20 frames"}) {
+    for (const char* word :
+         {"stand", "pair", "culling", "together", "p95", "worst", "300 bodies", "20 frames"}) {
         expectIn(told.out, word);
     }
 }
@@ -97,6 +98,7 @@ TEST_F(Wander, TellsTheMedianOfAllFramesButTheFirst) {
     EXPECT_GE(numbers["readings"]["p95"], numbers["readings"]["milliseconds"]);
     for (const json& phase : numbers["phases"]) {
         EXPECT_GE(phase["p95"], phase["milliseconds"]);
+        EXPECT_GE(phase["worst"], phase["p95"]);
     }
 }
 
