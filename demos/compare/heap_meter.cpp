@@ -20,7 +20,7 @@ std::optional<std::int64_t> heapBytes() noexcept {
 }
 
 std::optional<std::int64_t> HeapMeter::bytes() const noexcept {
-    return heapBytes() ? std::optional(grown_) : std::nullopt;
+    return heapBytes() && grown_ >= 0 ? std::optional(grown_) : std::nullopt;
 }
 
 HeapScope::~HeapScope() {

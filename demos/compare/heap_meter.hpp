@@ -14,6 +14,8 @@ namespace hashphase::demos {
 /// Adds up the heap's growth while a HeapScope is open.
 class HeapMeter {
 public:
+    /// Nothing where the C library does not tell, or more was freed than taken: then the calls freed what others
+    /// had allocated.
     [[nodiscard]] std::optional<std::int64_t> bytes() const noexcept;
 
 private:

@@ -15,6 +15,13 @@ class NoBoxes : public btSimpleBroadphase {
 
 }  // namespace
 
+btDefaultCollisionConstructionInfo roomyPools() {
+    btDefaultCollisionConstructionInfo info;
+    info.m_defaultMaxPersistentManifoldPoolSize = 16'384;
+    info.m_defaultMaxCollisionAlgorithmPoolSize = 16'384;
+    return info;
+}
+
 ObservedWorld::StepTimes ObservedWorld::stepOnce(btScalar seconds) {
     times_ = {};
     observingMs_ = 0;

@@ -12,6 +12,10 @@
 
 namespace hashphase::demos {
 
+/// For such worlds: large enough that contacts come from the pools and never from the heap, whose growth is
+/// measured around the broadphase. Removing a pair frees its contacts.
+[[nodiscard]] btDefaultCollisionConstructionInfo roomyPools();
+
 class ObservedWorld : public btDiscreteDynamicsWorld {
 public:
     using btDiscreteDynamicsWorld::btDiscreteDynamicsWorld;

@@ -13,15 +13,6 @@ namespace {
 
 constexpr btScalar kStep = btScalar(1) / btScalar(60);  // [s]
 
-// Large enough that contacts come from the pools and never from the heap, whose growth is measured
-// around the broadphase: removing a pair frees its contacts.
-btDefaultCollisionConstructionInfo roomyPools() {
-    btDefaultCollisionConstructionInfo info;
-    info.m_defaultMaxPersistentManifoldPoolSize = 16'384;
-    info.m_defaultMaxCollisionAlgorithmPoolSize = 16'384;
-    return info;
-}
-
 Aabb<float> boxOf(const btBroadphaseProxy& proxy) {
     return toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
 }

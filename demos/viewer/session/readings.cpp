@@ -73,6 +73,11 @@ std::uint64_t countOnRadar(const Session& session) {
     return std::accumulate(radar->counts.begin(), radar->counts.end(), std::uint64_t{0});
 }
 
+std::int64_t memoryOf(const Session& session) {
+    const std::optional<std::int64_t> bytes = session.stage->memoryBytes();
+    return *need(bytes, bytes.has_value(), "The heap does not show the memory of this broadphase.");
+}
+
 using Seen = const Session&;
 
 }  // namespace
@@ -115,7 +120,7 @@ std::span<const Reading> readings() {
                 [](Seen s) {
                     return countBodies(s, [](const StageBody& body) { return body.speed > 0; });
                 }},
-        Reading{"memory", [](Seen s) { return s.stage->memoryBytes(); }},
+        Reading{"memory", memoryOf},
         Reading{"phases", [](Seen s) { return s.stage->times().size(); }},
         Reading{"zones", [](Seen s) { return s.stage->zones().size(); }},
         Reading{"milliseconds", [](Seen s) { return s.history.medianTotal(); }},

@@ -194,8 +194,8 @@ void Panel::Switches::showScene(double frameSeconds) const {
         count("passed through walls", "tunnelled");
     }
     count("frame", "frame");
-    numberRow("memory of grid and tables",
-              byteSize(static_cast<std::int64_t>(session.stage->memoryBytes())));
+    const std::optional<std::int64_t> bytes = session.stage->memoryBytes();
+    numberRow("memory of grid and tables", bytes ? byteSize(*bytes) : "n/a");
     press(session.isPlaying ? "pause (P)" : "play (P)", "pause", true);
     press("step (O)", "step");
     press("restart (R)", "restart");

@@ -298,8 +298,8 @@ void BulletStage::listBoxes(std::vector<Aabb<float>>& boxes,
     }
 }
 
-std::uint64_t BulletStage::memoryBytes() const {
-    return world_->memoryBytes() + (second_ ? second_->grid.memoryBytes() : 0);
+std::optional<std::int64_t> BulletStage::memoryBytes() const {
+    return sumOf(second_ ? second_->grid.memoryBytes() : 0, world_->memoryBytes());
 }
 
 }  // namespace hashphase::demos

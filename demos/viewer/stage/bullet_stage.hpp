@@ -30,7 +30,7 @@ public:
     void listBoxes(std::vector<Aabb<float>>& boxes,
                    std::vector<CollisionFilter>& filters) const override;
     [[nodiscard]] const Grid<float>* grid() const override;
-    [[nodiscard]] std::uint64_t memoryBytes() const override;
+    [[nodiscard]] std::optional<std::int64_t> memoryBytes() const override;
 
 private:
     /// The grid beside a broadphase that has none.

@@ -2,8 +2,8 @@
 #include <demos/viewer/stage/bullet_world.hpp>
 
 #include <integration/bullet/conversions.hpp>
+#include <integration/bullet/spatial_hash_broadphase.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -92,8 +92,10 @@ void BulletWorld::apply(WorldEffects effects) {
     configurator->apply(effects);
 }
 
-std::uint64_t BulletWorld::memoryBytes() const noexcept {
-    return static_cast<std::uint64_t>(std::max<std::int64_t>(world.heap().bytes().value_or(0), 0));
+std::optional<std::int64_t> BulletWorld::memoryBytes() const noexcept {
+    const auto* ours = dynamic_cast<const SpatialHashBroadphase*>(broadphase.get());
+    return ours != nullptr ? std::optional(static_cast<std::int64_t>(ours->memoryBytes()))
+                           : world.heap().bytes();
 }
 
 void BulletWorld::remove(btRigidBody& body) {
@@ -117,46 +119,56 @@ void BulletWorld::remove(btRigidBody& body) {
     world.removeRigidBody(&body);
 }
 
-void BulletWorld::replaceBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs) {
-    const WorldEffects effects = configurator->effects();
-    configurator = nullptr;
-    HeapMeter used;
-    {
-        const HeapScope scope(used);
-        std::unique_ptr<btBroadphaseInterface> next = kind.make(needs);
-        std::vector<btBroadphaseProxy*> removed;
-        for (const auto& body : contents.bodies()) {
-            moveProxy(*body, *next, removed);
-        }
-        for (btBroadphaseProxy* proxy : removed) {
-            next->destroyProxy(proxy, &dispatcher);
-        }
-        world.setBroadphase(next.get());
-        broadphase = std::move(next);
-    }
-    world.heap() = used;
-    configurator = std::make_unique<WorldConfigurator>(world);
-    configurator->apply(effects);
-}
+namespace {
 
-void BulletWorld::moveProxy(btRigidBody& body, btBroadphaseInterface& next,
-                            std::vector<btBroadphaseProxy*>& removed) {
+/// As its present proxy; with another broadphase.
+btBroadphaseProxy* proxyIn(btBroadphaseInterface& next, btRigidBody& body,
+                           btDispatcher& dispatcher) {
     btVector3 low;
     btVector3 high;
     body.getAabb(low, high);
-    btBroadphaseProxy* before = body.getBroadphaseHandle();
+    const btBroadphaseProxy* present = body.getBroadphaseHandle();
     const CollisionFilter filter =
-        before ? CollisionFilter{before->m_collisionFilterGroup, before->m_collisionFilterMask}
-               : CollisionFilter{0, 0};
-    btBroadphaseProxy* proxy = next.createProxy(low, high, body.getCollisionShape()->getShapeType(),
-                                                &body, filter.group, filter.mask, &dispatcher);
-    if (before == nullptr) {
-        removed.push_back(proxy);
-        return;
+        present ? CollisionFilter{present->m_collisionFilterGroup, present->m_collisionFilterMask}
+                : CollisionFilter{0, 0};
+    return next.createProxy(low, high, body.getCollisionShape()->getShapeType(), &body,
+                            filter.group, filter.mask, &dispatcher);
+}
+
+}  // namespace
+
+// What the former broadphase gives back is not the next one's, so it ends after that was measured.
+void BulletWorld::replaceBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs) {
+    const WorldEffects effects = configurator->effects();
+    configurator = nullptr;
+    const auto bodies = contents.bodies();
+    std::vector<btBroadphaseProxy*> proxies(bodies.size());
+    std::unique_ptr<btBroadphaseInterface> next;
+    HeapMeter used;
+    {
+        const HeapScope scope(used);
+        next = kind.make(needs);
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            proxies[i] = proxyIn(*next, *bodies[i], dispatcher);
+        }
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            if (bodies[i]->getBroadphaseHandle() == nullptr) {
+                next->destroyProxy(proxies[i], &dispatcher);
+            }
+        }
     }
-    broadphase->getOverlappingPairCache()->cleanProxyFromPairs(before, &dispatcher);
-    broadphase->destroyProxy(before, &dispatcher);
-    body.setBroadphaseHandle(proxy);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        if (btBroadphaseProxy* const before = bodies[i]->getBroadphaseHandle()) {
+            broadphase->getOverlappingPairCache()->cleanProxyFromPairs(before, &dispatcher);
+            broadphase->destroyProxy(before, &dispatcher);
+            bodies[i]->setBroadphaseHandle(proxies[i]);
+        }
+    }
+    world.setBroadphase(next.get());
+    broadphase = std::move(next);
+    world.heap() = used;
+    configurator = std::make_unique<WorldConfigurator>(world);
+    configurator->apply(effects);
 }
 
 }  // namespace hashphase::demos

@@ -15,6 +15,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace hashphase::demos {
@@ -36,8 +37,8 @@ struct BulletWorld {
     /// Sets what Bullet computes.
     void apply(WorldEffects effects);
 
-    /// Of the broadphase.
-    [[nodiscard]] std::uint64_t memoryBytes() const noexcept;
+    /// Of the broadphase: as it tells itself where it is ours, else as HeapMeter::bytes().
+    [[nodiscard]] std::optional<std::int64_t> memoryBytes() const noexcept;
 
     /// Takes a body that is in the world out of it. Its joints go with it, and whoever leans on it wakes up.
     void remove(btRigidBody& body);
@@ -46,17 +47,13 @@ struct BulletWorld {
     /// if all had been added in their order, and those that were removed had been then.
     void replaceBroadphase(const BroadphaseKind& kind, const BroadphaseNeeds& needs);
 
-    btDefaultCollisionConfiguration configuration;
+    btDefaultCollisionConfiguration configuration{roomyPools()};
     btCollisionDispatcher dispatcher{&configuration};
     btSequentialImpulseConstraintSolver solver;
     std::unique_ptr<btBroadphaseInterface> broadphase;
     ObservedWorld world;
     WorldContents contents{world};
     std::unique_ptr<WorldConfigurator> configurator;
-
-private:
-    void moveProxy(btRigidBody& body, btBroadphaseInterface& next,
-                   std::vector<btBroadphaseProxy*>& removed);
 };
 
 }  // namespace hashphase::demos

@@ -237,8 +237,8 @@ const Grid<float>* PaperStage::grid() const {
     return simulation_.declared().set().containsAny(kGridEffects) ? &simulation_.grid() : nullptr;
 }
 
-std::uint64_t PaperStage::memoryBytes() const {
-    return totalBytes(simulation_.footprint()) + (rival_ ? rival_->memoryBytes() : 0);
+std::optional<std::int64_t> PaperStage::memoryBytes() const {
+    return sumOf(totalBytes(simulation_.footprint()), rival_ ? rival_->memoryBytes() : 0);
 }
 
 std::shared_ptr<void> limitThreads([[maybe_unused]] std::size_t count) {

@@ -123,9 +123,9 @@ void RecordingStage::listBoxes(std::vector<Aabb<float>>& boxes,
     filters = scene_.filters();
 }
 
-std::uint64_t RecordingStage::memoryBytes() const {
-    return grid_->memoryBytes() + (pairs_ ? pairs_->memoryBytes() : 0) +
-           (rival_ ? rival_->memoryBytes() : 0);
+std::optional<std::int64_t> RecordingStage::memoryBytes() const {
+    return sumOf(grid_->memoryBytes() + (pairs_ ? pairs_->memoryBytes() : 0),
+                 rival_ ? rival_->memoryBytes() : 0);
 }
 
 }  // namespace hashphase::demos

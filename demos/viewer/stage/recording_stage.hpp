@@ -33,7 +33,7 @@ public:
     void listBoxes(std::vector<Aabb<float>>& boxes,
                    std::vector<CollisionFilter>& filters) const override;
     [[nodiscard]] const Grid<float>* grid() const override { return grid_.get(); }
-    [[nodiscard]] std::uint64_t memoryBytes() const override;
+    [[nodiscard]] std::optional<std::int64_t> memoryBytes() const override;
 
 private:
     void runFrame() override;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/stage/rival_pairs.hpp>
 
-#include <algorithm>
-
 namespace hashphase::demos {
 
 RivalPairs::RivalPairs(const BroadphaseKind& kind, const Aabb<float>& bounds,
@@ -31,11 +29,6 @@ void RivalPairs::update(std::span<const Aabb<float>> boxes,
     clock.end("find pairs");
     broadphase_.listPairs(pairs_);
     clock.skip();
-}
-
-std::uint64_t RivalPairs::memoryBytes() const noexcept {
-    return static_cast<std::uint64_t>(
-        std::max<std::int64_t>(broadphase_.heap().bytes().value_or(0), 0));
 }
 
 }  // namespace hashphase::demos

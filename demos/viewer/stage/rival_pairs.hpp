@@ -6,6 +6,8 @@
 #include <demos/compare/filled_broadphase.hpp>
 #include <demos/viewer/stage/phases.hpp>
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,7 +31,10 @@ public:
 
     /// As the broadphase lists them, sorted.
     [[nodiscard]] const std::vector<PairKey>& pairs() const noexcept { return pairs_; }
-    [[nodiscard]] std::uint64_t memoryBytes() const noexcept;
+    /// As HeapMeter::bytes().
+    [[nodiscard]] std::optional<std::int64_t> memoryBytes() const noexcept {
+        return broadphase_.heap().bytes();
+    }
 
 private:
     FilledBroadphase broadphase_;

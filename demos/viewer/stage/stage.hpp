@@ -179,8 +179,8 @@ public:
     /// not run.
     [[nodiscard]] std::span<const ProfileZone> zones() const noexcept { return zones_; }
 
-    /// Of all tables.
-    [[nodiscard]] virtual std::uint64_t memoryBytes() const = 0;
+    /// Of all tables; nothing where the heap does not tell what Bullet's broadphase holds.
+    [[nodiscard]] virtual std::optional<std::int64_t> memoryBytes() const = 0;
 
 protected:
     /// Declared from the beginning; and what can be.
@@ -199,6 +199,12 @@ protected:
     virtual bool removeOne(std::uint32_t /*index*/) { return false; }
     /// Bodies have been removed.
     virtual void forgetRemoved() {}
+
+    /// The sum of both, where the other is known.
+    [[nodiscard]] static std::optional<std::int64_t> sumOf(std::size_t own,
+                                                           std::optional<std::int64_t> other) {
+        return other ? std::optional(static_cast<std::int64_t>(own) + *other) : std::nullopt;
+    }
 
     Observers<float>* observers_ = nullptr;  // those of the one who derives
     Aabb<float> bounds_;

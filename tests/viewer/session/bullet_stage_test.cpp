@@ -36,6 +36,35 @@ TEST(BulletStage, KeepsIndicesAndPairsWhenTheBroadphaseIsSwapped) {
     EXPECT_EQ(stage.size(), 150U);
 }
 
+TEST(BulletStage, TellsTheMemoryOfTheBroadphaseThatIsAtWork) {
+    BulletStage stage(worldNamed("pile"), 1000, 1);
+    const auto runFor = [&stage](int frames) {
+        for (int frame = 0; frame < frames; ++frame) {
+            stage.step();
+        }
+    };
+    runFor(60);
+    const auto ofTheGrid = [&stage] {
+        return static_cast<std::int64_t>(stage.grid()->memoryBytes());
+    };
+    // Proxies and pairs are more than the grid.
+    constexpr std::int64_t kLeast = 1000 * sizeof(btBroadphaseProxy);
+    ASSERT_TRUE(stage.memoryBytes());
+    EXPECT_GT(*stage.memoryBytes(), ofTheGrid() + kLeast);
+    stage.setBroadphase(kindNamed("dbvt"));
+    runFor(60);
+    if (heapBytes()) {
+        ASSERT_TRUE(stage.memoryBytes()) << "the former broadphase's memory is not the next one's";
+        EXPECT_GT(*stage.memoryBytes(), ofTheGrid() + kLeast);
+    }
+    stage.setBroadphase(kindNamed("hash"));
+    runFor(60);
+    EXPECT_GT(stage.memoryBytes(), ofTheGrid() + kLeast);
+    const BulletWorld world(kindNamed("hash"), worldNamed("pile"), 100, 1);
+    const auto& ours = dynamic_cast<const SpatialHashBroadphase&>(*world.broadphase);
+    EXPECT_EQ(world.memoryBytes(), static_cast<std::int64_t>(ours.memoryBytes()));
+}
+
 TEST(BulletStage, FilesBodiesInCellsOfTheDeclaredSize) {
     BulletStage stage(worldNamed("pile"), 150, 1);
     for (const char* name : {"hash", "dbvt", "hash"}) {
