@@ -83,7 +83,7 @@ void Panel::build(Session& session, std::span<const Legend> legends, const Point
         showRadar(session);
         showLegends(session, legends);
     }
-    showBadge(session);
+    showBadges(session);
     if (session.options.help) {
         showHelp(session, session.options.panel ? kPanelWidth : 0);
     }

@@ -4,6 +4,7 @@
 #include <demos/console/format.hpp>
 #include <demos/viewer/draw/palette.hpp>
 #include <demos/viewer/session/commands.hpp>
+#include <demos/viewer/show/annotations.hpp>
 
 #include <algorithm>
 #include <cfloat>
@@ -243,35 +244,21 @@ void showLegends(const Session& session, std::span<const Legend> legends) {
     ImGui::End();
 }
 
-void showBadge(const Session& session) {
-    if (!session.isChecking) {
-        return;
+void showBadges(const Session& session) {
+    float top = 8;
+    int place = 0;
+    for (const Badge& badge : badges(session)) {
+        ImGui::PushStyleColor(ImGuiCol_WindowBg, colourOf(badge.colour));
+        ImGui::PushStyleColor(ImGuiCol_Text,
+                              badge.isAlert ? ImVec4(1, 1, 1, 1) : ImVec4(0, 0, 0, 1));
+        // By its place, as windows of new names are seen a frame later.
+        beginStill(("badge " + std::to_string(place++)).c_str(),
+                   {static_cast<float>(session.width) / 2, top}, {0.5F, 0});
+        ImGui::TextUnformatted(badge.text.c_str());
+        ImGui::End();
+        ImGui::PopStyleColor(2);
+        top += ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().WindowPadding.y + 4;
     }
-    const Palette& colours = palette(session.options.theme);
-    const PairCheck* check = session.check();
-    std::string text = "pairs are not verified: none are declared, or they are swept";
-    Colour colour = colours.warning;
-    if (check == nullptr && session.canCheck()) {
-        text = "pairs are verified after the next frame";
-        colour = colours.unknown;
-    } else if (check != nullptr && !check->missing.empty()) {
-        text = "WRONG: " + withThousands(check->missing.size()) + " of " +
-               withThousands(check->exact.size()) + " pairs are missing";
-        colour = colours.alert;
-    } else if (check != nullptr) {
-        text = "all " + withThousands(check->exact.size()) + " pairs found";
-        colour = check->extra.empty() ? colours.confirmed : colours.warning;
-        text += check->extra.empty()
-                    ? ", and no other"
-                    : ", and " + withThousands(check->extra.size()) + " that do not overlap";
-    }
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, colourOf(colour));
-    const bool isDarkText = !(check != nullptr && !check->missing.empty());
-    ImGui::PushStyleColor(ImGuiCol_Text, isDarkText ? ImVec4(0, 0, 0, 1) : ImVec4(1, 1, 1, 1));
-    beginStill("badge", {static_cast<float>(session.width) / 2, 8}, {0.5F, 0});
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::End();
-    ImGui::PopStyleColor(2);
 }
 
 void showHelp(const Session& session, float left) {

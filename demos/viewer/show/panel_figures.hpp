@@ -26,11 +26,11 @@ void numberRow(const std::string& name, const std::string& number);
 void showPhases(const Session& session);
 void showZones(const Session& session);
 
-/// Beside the panel, which is so wide: who is picked, the radar, what colours tell, whether pairs are right, keys.
+/// Beside the panel, which is so wide: who is picked, the radar, what colours tell, badges, keys.
 void showCard(const Session& session);
 void showRadar(const Session& session);
 void showLegends(const Session& session, std::span<const Legend> legends);
-void showBadge(const Session& session);
+void showBadges(const Session& session);
 void showHelp(const Session& session, float left);
 
 }  // namespace hashphase::demos

@@ -187,14 +187,18 @@ TEST(Panel, RunsWhatIsClicked) {
 
 // --- The panel -----------------------------------------------------------------------------------
 
-/// The part of the picture right of x and below y.
-Image from(int x, int y, const Image& image) {
-    Image part{image.width - x, image.height - y, {}};
-    for (int row = y; row < image.height; ++row) {
+Image cut(int x, int y, int width, int height, const Image& image) {
+    Image part{width, height, {}};
+    for (int row = y; row < y + height; ++row) {
         const std::uint8_t* const begin = image.at(x, row);
         part.pixels.insert(part.pixels.end(), begin, begin + 4 * part.width);
     }
     return part;
+}
+
+/// The part of the picture right of x and below y.
+Image from(int x, int y, const Image& image) {
+    return cut(x, y, image.width - x, image.height - y, image);
 }
 
 /// The session with the panel over it, as a screenshot.
@@ -236,6 +240,23 @@ TEST(Panel, IsDrawnOverEachSceneInBothThemes) {
     }
 }
 
+TEST(Panel, ShowsABadgeWhileTheFrustumIsFrozenAndNoPanel) {
+    const HeadlessContext context;
+    Viewer viewer(900, 700);
+    Session session(kWander, 900, 700);
+    session.isPlaying = false;
+    session.run("panel off");
+    session.run("eye 200 60 390 0 -25");
+    session.advance();
+    const auto upperMiddle = [&](const char* command) {
+        session.run(command);
+        return cut(360, 4, 180, 34, screenshotOf(viewer, session));
+    };
+    const Image free = upperMiddle("freeze off");
+    EXPECT_FALSE(looksTheSame(upperMiddle("freeze on"), free));
+    EXPECT_TRUE(looksTheSame(upperMiddle("freeze off"), free));
+}
+
 TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
     const HeadlessContext context;
     Viewer viewer(900, 700);
@@ -246,9 +267,7 @@ TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
         session.advance();
     }
     const Image picture = screenshotOf(viewer, session);
-    const Image map = from(660, 150, picture);
-    expectGolden("show/golden/radar",
-                 {map.width, 270, {map.pixels.begin(), map.pixels.begin() + 4 * 270 * map.width}});
+    expectGolden("show/golden/radar", cut(660, 150, 240, 270, picture));
 }
 
 }  // namespace
