@@ -4,6 +4,8 @@
 #include <demos/console/format.hpp>
 #include <demos/viewer/draw/palette.hpp>
 
+#include <optional>
+
 namespace hashphase::demos {
 namespace {
 
@@ -30,6 +32,17 @@ Badge pairBadge(const Session& session) {
     return {"all " + exact + " pairs found, and no other", colours.confirmed};
 }
 
+/// Where the camera shows a place; nothing where that is not in the picture.
+std::optional<Eigen::Vector2f> onScreen(const Session& session, const Vector3<float>& place) {
+    const Eigen::Vector4f clip = cameraView(session.pose()).viewProjection * place.homogeneous();
+    if (!(clip.w() > 0) || clip.head<2>().cwiseAbs().maxCoeff() > clip.w()) {
+        return std::nullopt;
+    }
+    const Eigen::Vector2f device = clip.head<2>() / clip.w();
+    return Eigen::Vector2f((1 + device.x()) / 2 * static_cast<float>(session.width),
+                           (1 - device.y()) / 2 * static_cast<float>(session.height));
+}
+
 }  // namespace
 
 std::vector<Badge> badges(const Session& session) {
@@ -41,6 +54,17 @@ std::vector<Badge> badges(const Session& session) {
         all.push_back({"frustum frozen (F)", palette(session.options.theme).warning});
     }
     return all;
+}
+
+std::vector<Label> zoneLabels(const Session& session) {
+    std::vector<Label> labels;
+    for (const InterestZone& zone : session.stage->interestZones()) {
+        if (const auto middle = onScreen(session, zone.centre)) {
+            labels.push_back({*middle, withThousands(zone.bodyCount) +
+                                           (zone.bodyCount == 1 ? " body" : " bodies")});
+        }
+    }
+    return labels;
 }
 
 }  // namespace hashphase::demos

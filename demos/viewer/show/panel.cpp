@@ -67,6 +67,7 @@ void Panel::build(Session& session, std::span<const Legend> legends, const Point
     }
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
+    showZoneLabels(session);
     if (session.options.panel) {
         ImGui::SetNextWindowPos({0, 0});
         ImGui::SetNextWindowSize({kPanelWidth, static_cast<float>(session.height)});

@@ -177,6 +177,17 @@ void showZones(const Session& session) {
 
 // --- Beside it -----------------------------------------------------------------------------------
 
+void showZoneLabels(const Session& session) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    for (const Label& label : zoneLabels(session)) {
+        const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
+        const ImVec2 at{label.middle.x() - size.x / 2, label.middle.y() - size.y / 2};
+        list.AddRectFilled({at.x - 3, at.y - 1}, {at.x + size.x + 3, at.y + size.y + 1},
+                           ImGui::GetColorU32(ImGuiCol_WindowBg, 0.8F));
+        list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), label.text.c_str());
+    }
+}
+
 void showCard(const Session& session) {
     if (!session.card) {
         return;

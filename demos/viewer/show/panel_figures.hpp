@@ -26,6 +26,9 @@ void numberRow(const std::string& name, const std::string& number);
 void showPhases(const Session& session);
 void showZones(const Session& session);
 
+/// How many bodies are in each zone of interest, behind all that comes after it.
+void showZoneLabels(const Session& session);
+
 /// Beside the panel, which is so wide: who is picked, the radar, what colours tell, badges, keys.
 void showCard(const Session& session);
 void showRadar(const Session& session);

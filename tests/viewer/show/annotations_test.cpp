@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,6 +61,43 @@ TEST(Badges, AlertWherePairsAreMissing) {
     EXPECT_FALSE(badges(session).at(0).isAlert);
     session.pairCheck.missing.push_back(session.pairCheck.exact.front());
     EXPECT_TRUE(badges(session).at(0).isAlert);
+}
+
+// --- Zones ---------------------------------------------------------------------------------------
+
+TEST(ZoneLabels, CountTheBodiesOfEachZoneAsReadingsDo) {
+    EXPECT_TRUE(zoneLabels(after({"camera top", "step 2"})).empty());
+    const Session session = after({"camera top", "effect zones on", "step 2"});
+    const std::vector<Label> labels = zoneLabels(session);
+    const std::span<const InterestZone> zones = session.stage->interestZones();
+    ASSERT_EQ(labels.size(), 20U);
+    ASSERT_EQ(zones.size(), 20U);
+    std::size_t all = 0;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        all += std::stoul(labels[i].text);
+        EXPECT_EQ(labels[i].text, std::to_string(zones[i].bodyCount) +
+                                      (zones[i].bodyCount == 1 ? " body" : " bodies"));
+    }
+    EXPECT_EQ(static_cast<double>(all), session.reading("inZones"));
+    EXPECT_GT(all, 0U);
+}
+
+TEST(ZoneLabels, AreAtTheCentresThatThePictureShows) {
+    const Session session = after({"effect zones on", "eye 200 60 390 0 -25", "step 2"});
+    const std::vector<Label> labels = zoneLabels(session);
+    EXPECT_GT(labels.size(), 2U);
+    EXPECT_LT(labels.size(), 20U) << "of those behind the camera or beside it there are none";
+    for (const Label& label : labels) {
+        // The ray through the pixel passes the centre of one of them.
+        const RayRegion<float> ray = session.view().rayThrough(label.middle.cast<double>());
+        float nearest = 1e9F;
+        for (const InterestZone& zone : session.stage->interestZones()) {
+            const Vector3<float> apart = zone.centre - ray.from();
+            const Vector3<float> way = ray.direction().normalized();
+            nearest = std::min(nearest, (apart - apart.dot(way) * way).norm());
+        }
+        EXPECT_LT(nearest, 0.1F) << label.text;
+    }
 }
 
 }  // namespace
