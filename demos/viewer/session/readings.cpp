@@ -78,6 +78,12 @@ std::int64_t memoryOf(const Session& session) {
     return *need(bytes, bytes.has_value(), "The heap does not show the memory of this broadphase.");
 }
 
+const FormerTimes& formerOf(const Session& session) {
+    return *need(session.former, session.former.has_value(),
+                 "There are no times of another broadphase: run \"step\", and then \"broadphase "
+                 "next\".");
+}
+
 using Seen = const Session&;
 
 }  // namespace
@@ -126,6 +132,7 @@ std::span<const Reading> readings() {
         Reading{"milliseconds", [](Seen s) { return s.history.medianTotal(); }},
         Reading{"p95", [](Seen s) { return s.history.p95Total(); }},
         Reading{"worst", [](Seen s) { return s.history.worstTotal(); }},
+        Reading{"millisecondsBefore", [](Seen s) { return formerOf(s).history.medianTotal(); }},
         Reading{"eyeX", [](Seen s) { return s.pose().eye.x(); }},
         Reading{"eyeY", [](Seen s) { return s.pose().eye.y(); }},
         Reading{"eyeZ", [](Seen s) { return s.pose().eye.z(); }},

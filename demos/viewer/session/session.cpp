@@ -213,6 +213,7 @@ void Session::beginAnew(bool goesHome) {
     rectangle.reset();
     recoloured.clear();
     history = {};
+    former.reset();
     pairs.clear();
     pairCheck = {};
     knowsPairs = false;
@@ -256,7 +257,11 @@ void Session::declare(EffectSet effects) {
 }
 
 void Session::setBroadphase(const BroadphaseKind& kind) {
+    const BroadphaseKind& present = stage->broadphase();
     ask([&] { stage->setBroadphase(kind); });
+    if (&kind != &present && history.frameCount() > 0) {
+        former = FormerTimes{present.name, std::exchange(history, {})};
+    }
     knowsPairs = false;
     framesToRead = 0;
     if (const std::size_t bodies = stage->size(); bodies > kind.liveUpTo) {

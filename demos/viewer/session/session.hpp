@@ -67,6 +67,12 @@ struct ViewOptions {
     }
 };
 
+/// What frames took with the broadphase before the present one.
+struct FormerTimes {
+    std::string_view broadphase;
+    PhaseHistory history;
+};
+
 /// Its data are for whoever shows it to read; commands change them.
 struct Session {
     /// Throws InputError as makeStage() does.
@@ -94,7 +100,8 @@ struct Session {
     /// Declares these effects and no others: each with what the scene says of it by itself, or with defaults
     /// where it says nothing. The grid's variables and the radius of proximity stay as they are.
     void declare(EffectSet effects);
-    /// Says beforehand what to expect where so many bodies are too many for it: see advance().
+    /// Says beforehand what to expect where so many bodies are too many for it: see advance(). With another one
+    /// the history begins again, and the former one is kept, unless no frame was simulated with it.
     void setBroadphase(const BroadphaseKind& kind);
     void setChecking(bool isOn);
     void freeze(bool isFrozen);
@@ -184,7 +191,8 @@ struct Session {
     CellLoads loads;  // of the last frame; empty while nobody shows them, and without a grid
     std::vector<PairKey>
         pairs;  // those that the broadphase has found, sorted; none while nobody shows them
-    PhaseHistory history;
+    PhaseHistory history;               // with the present broadphase
+    std::optional<FormerTimes> former;  // none before the scene's first swap
 
     CommandLog log;
     std::unique_ptr<BoxRecorder> recorder;  // one that is not complete; else null

@@ -56,6 +56,18 @@ std::vector<Badge> badges(const Session& session) {
     return all;
 }
 
+std::string swapText(const Session& session) {
+    if (!session.former) {
+        return {};
+    }
+    const auto timed = [](std::string_view broadphase, const PhaseHistory& history) {
+        return std::string(broadphase) +
+               (history.toldCount() > 0 ? " " + fixed(history.medianTotal(), 2) + " ms" : "");
+    };
+    return timed(session.stage->broadphase().name, session.history) +
+           ", before: " + timed(session.former->broadphase, session.former->history);
+}
+
 std::vector<Label> zoneLabels(const Session& session) {
     std::vector<Label> labels;
     for (const InterestZone& zone : session.stage->interestZones()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Words over the picture, as data: badges at its upper border, and counts at zones of interest.
+// Words as data: badges at the picture's upper border, counts at zones of interest, and a swap of broadphases.
 
 #include <demos/viewer/draw/picture.hpp>
 #include <demos/viewer/session/session.hpp>
@@ -21,6 +21,10 @@ struct Badge {
 /// From the upper one to the lower one: whether all pairs are right, while they are verified, and that the frustum
 /// is frozen.
 [[nodiscard]] std::vector<Badge> badges(const Session& session);
+
+/// What a frame takes with this broadphase and with the one before: "hash 0.41 ms, before: dbvt 4.80 ms". Empty
+/// where the broadphase was not swapped.
+[[nodiscard]] std::string swapText(const Session& session);
 
 /// A text at a place of the picture.
 struct Label {

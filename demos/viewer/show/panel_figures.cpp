@@ -102,6 +102,15 @@ void numbersRow(const std::string& text, const Texts& numbers, std::optional<ImU
     }
 }
 
+/// Median, 95th percentile, worst frame, and the median before.
+Texts textsOf(const PhaseLine& line) {
+    Texts texts;
+    for (const std::optional<double> time : {line.median, line.p95, line.worst, line.before}) {
+        texts.push_back(time ? fixed(*time, 2) : "-");
+    }
+    return texts;
+}
+
 /// A table of texts with numbers, in columns of these names.
 void beginNumbers(const char* name, const Texts& columns) {
     constexpr float kColumnWidth = 42;  // [pixels]
@@ -142,23 +151,21 @@ void showPhases(const Session& session) {
         return;
     }
     drawStack(session);
-    const PhaseHistory& history = session.history;
-    const auto row = [](const std::string& name, std::initializer_list<double> times,
-                        std::optional<ImU32> colour = {}) {
-        Texts texts;
-        for (const double time : times) {
-            texts.push_back(fixed(time, 2));
-        }
-        numbersRow(name, texts, colour);
-    };
-    beginNumbers("phases", {"median", "p95", "worst"});
-    for (std::size_t i = 0; i < history.rows().size(); ++i) {
-        const PhaseHistory::Row& phase = history.rows()[i];
-        row(std::string(phase.name),
-            {history.median(phase), history.p95(phase), history.worst(phase)},
-            phaseColour(session, i));
+    const PhaseHistory* const before = session.former ? &session.former->history : nullptr;
+    if (before != nullptr) {
+        ImGui::TextWrapped("%s", swapText(session).c_str());
     }
-    row("together", {history.medianTotal(), history.p95Total(), history.worstTotal()});
+    Texts columns{"median", "p95", "worst"};
+    columns.resize(before != nullptr ? 4 : 3, "before");
+    beginNumbers("phases", columns);
+    const std::size_t drawn = session.history.rows().size();
+    const std::vector<PhaseLine> lines = phaseLines(session.history, before);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        Texts times = textsOf(lines[i]);
+        times.resize(columns.size());
+        numbersRow(std::string(lines[i].name), times,
+                   i < drawn ? std::optional(phaseColour(session, i)) : std::nullopt);
+    }
     ImGui::EndTable();
 }
 

@@ -5,6 +5,7 @@
 #include <demos/report/json_values.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/session/commands.hpp>
+#include <demos/viewer/show/annotations.hpp>
 
 #include <iomanip>
 #include <ostream>
@@ -12,10 +13,15 @@
 namespace hashphase::demos {
 namespace {
 
-void tellPhase(std::ostream& out, std::string_view name, double median, double p95, double worst) {
-    out << std::left << std::setw(20) << name << std::right << std::setw(9) << milliseconds(median)
-        << " ms   p95 " << std::setw(8) << milliseconds(p95) << "   worst " << std::setw(8)
-        << milliseconds(worst) << '\n';
+void tellPhase(const PhaseLine& line, bool hasBefore, std::ostream& out) {
+    const auto text = [](std::optional<double> time) { return time ? milliseconds(*time) : "-"; };
+    out << std::left << std::setw(20) << line.name << std::right << std::setw(9)
+        << text(line.median) << " ms   p95 " << std::setw(8) << text(line.p95) << "   worst "
+        << std::setw(8) << text(line.worst);
+    if (hasBefore) {
+        out << "   before " << std::setw(8) << text(line.before);
+    }
+    out << '\n';
 }
 
 // The scene that was on stage at the end; of a recording of boxes all objects are bodies, and of a scene file,
@@ -55,14 +61,16 @@ void listWander(std::ostream& out) {
 }
 
 void tellPhases(const Session& session, bool drewPictures, std::ostream& out) {
-    const PhaseHistory& history = session.history;
-    if (const std::size_t count = history.toldCount(); count > 0) {
-        for (const PhaseHistory::Row& row : history.rows()) {
-            tellPhase(out, row.name, history.median(row), history.p95(row), history.worst(row));
+    if (const std::size_t count = session.history.toldCount(); count > 0) {
+        const PhaseHistory* const before = session.former ? &session.former->history : nullptr;
+        for (const PhaseLine& line : phaseLines(session.history, before)) {
+            tellPhase(line, before != nullptr, out);
         }
-        tellPhase(out, "together", history.medianTotal(), history.p95Total(), history.worstTotal());
         out << "medians of the last " << (count == 1 ? "frame" : withThousands(count) + " frames")
             << (drewPictures ? ", of a run that drew pictures as well" : "") << '\n';
+        if (before != nullptr) {
+            out << swapText(session) << '\n';
+        }
     }
     out << withThousands(session.stage->size()) << " bodies, "
         << withThousands(session.visibleCount()) << " visible, "

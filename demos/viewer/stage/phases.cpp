@@ -49,4 +49,29 @@ std::deque<float> PhaseHistory::totals() const {
     return totals;
 }
 
+std::vector<PhaseLine> phaseLines(const PhaseHistory& history, const PhaseHistory* before) {
+    std::vector<PhaseLine> lines;
+    for (const PhaseHistory::Row& row : history.rows()) {
+        lines.push_back({row.name, history.median(row), history.p95(row), history.worst(row)});
+    }
+    if (before != nullptr) {
+        for (const PhaseHistory::Row& row : before->rows()) {
+            const auto known = std::ranges::find(lines, row.name, &PhaseLine::name);
+            PhaseLine& line =
+                known != lines.end() ? *known : lines.emplace_back(PhaseLine{.name = row.name});
+            line.before = before->median(row);
+        }
+    }
+    PhaseLine& together = lines.emplace_back(PhaseLine{.name = "together"});
+    if (history.toldCount() > 0) {
+        together.median = history.medianTotal();
+        together.p95 = history.p95Total();
+        together.worst = history.worstTotal();
+    }
+    if (before != nullptr) {
+        together.before = before->medianTotal();
+    }
+    return lines;
+}
+
 }  // namespace hashphase::demos

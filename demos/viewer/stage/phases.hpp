@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -80,8 +81,8 @@ public:
     /// Frames that are known, at most kFrames.
     [[nodiscard]] std::size_t frameCount() const noexcept { return count_; }
 
-    /// Known frames that times are told of: all but the first of the scene, which fills tables and caches, unless
-    /// there is no other.
+    /// Known frames that times are told of: all but the first one, which fills tables and caches, unless there is
+    /// no other.
     [[nodiscard]] std::size_t toldCount() const noexcept { return count_ - firstTold(); }
 
     /// Of those, the time that half of them do not exceed, the one that one in twenty does, and the longest [ms].
@@ -102,8 +103,22 @@ private:
     [[nodiscard]] std::deque<float> totals() const;
 
     std::vector<Row> rows_;
-    bool knowsBeginning_ = true;  // the scene's first frame is still known, or to come
+    bool knowsBeginning_ = true;  // the first frame is still known, or to come
     std::size_t count_ = 0;
 };
+
+/// The times of a phase [ms]; empty where there are none.
+struct PhaseLine {
+    std::string_view name;
+    std::optional<double> median = {};
+    std::optional<double> p95 = {};
+    std::optional<double> worst = {};
+    std::optional<double> before = {};  // median of another history
+};
+
+/// The rows of a history, in their order; then phases that only the other one has, where it is not null; then
+/// "together".
+[[nodiscard]] std::vector<PhaseLine> phaseLines(const PhaseHistory& history,
+                                                const PhaseHistory* before);
 
 }  // namespace hashphase::demos

@@ -101,6 +101,54 @@ TEST(PhaseHistory, ForgetsPhasesThatAreNoMore) {
     EXPECT_EQ(history.medianTotal(), 2);
 }
 
+TEST(PhaseLines, HaveTheTimesOfBothHistoriesByPhase) {
+    PhaseHistory now;
+    PhaseHistory former;
+    for (int frame = 0; frame < 5; ++frame) {
+        now.add(std::vector<PhaseTime>{{"pair", 1}, {"culling", 2}});
+        former.add(std::vector<PhaseTime>{{"culling", 3}, {"set boxes", 4}});
+    }
+    const std::vector<PhaseLine> alone = phaseLines(now, nullptr);
+    ASSERT_EQ(alone.size(), 3U);
+    EXPECT_EQ(alone[1].name, "culling");
+    EXPECT_EQ(alone[1].median, 2);
+    EXPECT_EQ(alone[1].before, std::nullopt);
+    EXPECT_EQ(alone[2].name, "together");
+    EXPECT_EQ(alone[2].worst, 3);
+    const std::vector<PhaseLine> both = phaseLines(now, &former);
+    ASSERT_EQ(both.size(), 4U);
+    EXPECT_EQ(both[0].before, std::nullopt) << "no phase of the former history";
+    EXPECT_EQ(both[1].before, 3);
+    EXPECT_EQ(both[2].name, "set boxes");
+    EXPECT_EQ(both[2].median, std::nullopt) << "no phase of the present history";
+    EXPECT_EQ(both[2].before, 4);
+    EXPECT_EQ(both[3].median, 3);
+    EXPECT_EQ(both[3].before, 7);
+    EXPECT_EQ(phaseLines({}, &former).back().median, std::nullopt) << "no frame has come";
+}
+
+TEST(PhaseHistory, BeginsAgainWithAnotherBroadphaseAndTheFormerOneIsKept) {
+    Session session({.name = "wander", .file = {}, .objects = 200, .seed = 1});
+    step(session, 4);
+    session.run("broadphase hash");
+    EXPECT_EQ(session.history.frameCount(), 4U) << "is no swap";
+    EXPECT_THROW(static_cast<void>(session.reading("millisecondsBefore")), InputError);
+    const double median = session.history.medianTotal();
+    session.run("broadphase dbvt");
+    EXPECT_EQ(session.history.frameCount(), 0U);
+    session.run("broadphase simple");
+    ASSERT_TRUE(session.former);
+    EXPECT_EQ(session.former->broadphase, "hash") << "no frame was simulated with dbvt";
+    EXPECT_EQ(session.reading("millisecondsBefore"), median);
+    step(session, 3);
+    EXPECT_EQ(session.history.frameCount(), 3U);
+    EXPECT_EQ(session.reading("millisecondsBefore"), median);
+    session.run("broadphase hash");
+    EXPECT_EQ(session.former->broadphase, "simple");
+    session.run("restart");
+    EXPECT_FALSE(session.former);
+}
+
 TEST(PhaseHistory, IsWhatASessionReads) {
     Session session({.name = "wander", .file = {}, .objects = 200, .seed = 1});
     step(session, 4);

@@ -2,6 +2,7 @@
 //
 // What the viewer writes over its picture.
 
+#include <demos/console/format.hpp>
 #include <demos/viewer/show/annotations.hpp>
 
 #include <gtest/gtest.h>
@@ -61,6 +62,17 @@ TEST(Badges, AlertWherePairsAreMissing) {
     EXPECT_FALSE(badges(session).at(0).isAlert);
     session.pairCheck.missing.push_back(session.pairCheck.exact.front());
     EXPECT_TRUE(badges(session).at(0).isAlert);
+}
+
+TEST(SwapText, ComparesFramesWithTheFormerBroadphase) {
+    EXPECT_EQ(swapText(after({"step 3"})), "");
+    const Session session = after({"step 3", "broadphase dbvt", "step 3"});
+    EXPECT_EQ(swapText(session), "dbvt " + fixed(session.reading("milliseconds"), 2) +
+                                     " ms, before: hash " +
+                                     fixed(session.reading("millisecondsBefore"), 2) + " ms");
+    Session next = after({"step 3"});
+    next.run("broadphase simple");
+    EXPECT_EQ(swapText(next).substr(0, 21), "simple, before: hash ");
 }
 
 // --- Zones ---------------------------------------------------------------------------------------

@@ -102,6 +102,29 @@ TEST_F(Wander, TellsTheMedianOfAllFramesButTheFirst) {
     }
 }
 
+TEST_F(Wander, TellsTheTimesOfTheFormerBroadphaseAfterASwap) {
+    const std::string script = file("swap.script", "step 5\nbroadphase dbvt\nstep 5\n");
+    EXPECT_EQ(run("--objects 300 --script " + script + " --json " + file("n.json")).code, kExitOk);
+    const json numbers = json::parse(std::ifstream(file("n.json")));
+    EXPECT_GT(numbers["readings"]["millisecondsBefore"], 0);
+    EXPECT_TRUE(numbers["phases"].contains("find pairs"));
+    EXPECT_FALSE(numbers["phases"].contains("pair")) << "is the former broadphase's";
+    Session session({.name = "wander", .file = {}, .objects = 300, .seed = 1});
+    const auto told = [&session] {
+        std::ostringstream out;
+        session.advance();
+        session.advance();
+        tellPhases(session, false, out);
+        return out.str();
+    };
+    EXPECT_EQ(told().find("before"), std::string::npos);
+    session.run("broadphase dbvt");
+    const std::string both = told();
+    expectIn(both, "medians of the last frame\ndbvt ");
+    expectIn(both, " ms, before: hash ");
+    expectIn(both, "pair                        - ms");
+}
+
 TEST_F(Wander, ListsScenesKeysAndCommands) {
     const Outcome list = typed("--list");
     EXPECT_EQ(list.code, kExitOk);
