@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::size_t kMostLinks = 20'000;
 constexpr float kManyPairs = 8;  // of a body: as bright as any
+// Of bodies over the map of loads, which they would hide:
+constexpr float kDotShare = 0.2F;   // radius, by the body's
+constexpr float kDotRadius = 0.7F;  // at least, where larger ones were asked for [pixels]
 
 /// The ramp from nothing to `most`, in even steps; the last stands for more, too, where it `isOpen`.
 Legend rampOf(std::string title, double most, int digits, bool isOpen = false) {
@@ -163,11 +166,18 @@ const Picture& PictureMaker::make(const Session& session, float contactFrom, int
     boxes_.clear();
     capsules_.clear();
     lines_.clear();
+    setGround(session);
+    const bool areDots = picture_.heatMap && !picture_.ground.corners.empty();
     for (std::uint32_t index = 0;
          options.has(Overlay::bodies) && index < session.stage->indexLimit(); ++index) {
         if (session.isVisible(index)) {
             const StageBody body = session.stage->body(index);
-            addBody(body, colours_.of(session, index, body));
+            const Colour colour = colours_.of(session, index, body);
+            if (areDots) {
+                addDot(body, colour);
+            } else {
+                addBody(body, colour);
+            }
         }
     }
     if (session.frozen) {
@@ -184,10 +194,9 @@ const Picture& PictureMaker::make(const Session& session, float contactFrom, int
     picture_.capsules = capsules_;
     picture_.lines = lines_;
     picture_.rectangle = session.rectangle;
-    picture_.leastRadius = options.dots;
+    picture_.leastRadius = areDots ? std::min(options.dots, kDotRadius) : options.dots;
     picture_.contactFrom = contactFrom;
     picture_.coveredLeft = coveredLeft;
-    setGround(session);
     return picture_;
 }
 
@@ -204,6 +213,12 @@ void PictureMaker::setGround(const Session& session) {
     if (session.options.has(Overlay::heat) && !loads.isEmpty()) {
         picture_.heatMap =
             HeatMap{{loads.corner, loads.cellSize}, loads.columns, loads.rows, loads.shades};
+    }
+}
+
+void PictureMaker::addDot(const StageBody& body, Colour colour) {
+    if (body.shape != StageBody::Shape::none) {
+        spheres_.push_back({body.centre, kDotShare * body.size.x(), colour});
     }
 }
 

@@ -49,7 +49,8 @@ private:
 class PictureMaker {
 public:
     /// Spheres larger than `contactFrom` have a dark spot below them; something else will cover `coveredLeft`
-    /// columns [pixels]. Valid until the next call, or the session changes. Cost: O(bodies).
+    /// columns [pixels]. Over the map of loads bodies are dots, as they would hide it. Valid until the next call,
+    /// or the session changes. Cost: O(bodies).
     [[nodiscard]] const Picture& make(const Session& session, float contactFrom = kContactFrom,
                                       int coveredLeft = 0);
 
@@ -60,6 +61,7 @@ public:
 
 private:
     void addBody(const StageBody& body, Colour colour);
+    void addDot(const StageBody& body, Colour colour);
     void addCircle(const Vector3<float>& centre, const Vector3<float>& right,
                    const Vector3<float>& up, Colour colour);
     void addZones(const Session& session);

@@ -29,15 +29,16 @@ constexpr int kHeight = 150;
 
 Image seen(const Session& session) {
     const HeadlessContext context;
-    Renderer renderer(kWidth, kHeight);
+    Renderer renderer(session.width, session.height);
     PictureMaker maker;
     renderer.draw(maker.make(session));
     return renderer.read();
 }
 
 /// The picture after these commands, of which steps are simulated at once.
-Image after(const SceneChoice& choice, const std::vector<const char*>& commands) {
-    Session session(choice, kWidth, kHeight);
+Image after(const SceneChoice& choice, const std::vector<const char*>& commands, int width = kWidth,
+            int height = kHeight) {
+    Session session(choice, width, height);
     session.isPlaying = false;
     for (const char* command : commands) {
         session.run(command);
@@ -145,6 +146,48 @@ TEST(PictureMaker, RingsWhatIsPickedWhereItIsOnTheScreen) {
             }
         }
     }
+}
+
+/// The share of pixels that are others than in a picture of the same size.
+double shareOfOthers(const Image& one, const Image& other) {
+    std::size_t count = 0;
+    for (int y = 0; y < one.height; ++y) {
+        for (int x = 0; x < one.width; ++x) {
+            const bool isSame = std::equal(one.at(x, y), one.at(x, y) + 3, other.at(x, y));
+            count += isSame ? 0 : 1;
+        }
+    }
+    return static_cast<double>(count) / (static_cast<double>(one.width) * one.height);
+}
+
+TEST(PictureMaker, DrawsBodiesAsDotsOverTheMapOfLoads) {
+    const SceneChoice crowd{.name = "wander", .file = {}, .objects = 30'000, .seed = 1};
+    const auto picture = [&crowd](const char* bodies) {
+        return after(crowd, {"camera top", "step 5", "overlay heat on", bodies}, 800, 800);
+    };
+    const Image dots = picture("overlay bodies on");
+    const Image map = picture("overlay bodies off");
+    EXPECT_GT(shareOfOthers(dots, map), 0.02);
+    EXPECT_LT(shareOfOthers(dots, map), 0.3);
+}
+
+TEST(PictureMaker, DrawsEachShapeAsADotOnlyWhileTheMapOfLoadsIsShown) {
+    Session session(kPile, kWidth, kHeight);
+    PictureMaker maker;
+    session.run("effect culling off");
+    const auto picture = [&](const char* command) -> const Picture& {
+        session.run(command);
+        session.advance();
+        return maker.make(session);
+    };
+    const Picture& dots = picture("overlay heat on");
+    EXPECT_EQ(dots.spheres.size(), 300U);
+    EXPECT_TRUE(dots.boxes.empty());
+    EXPECT_TRUE(dots.capsules.empty());
+    const Picture& bodies = picture("overlay heat off");
+    EXPECT_EQ(bodies.spheres.size(), 100U);
+    EXPECT_EQ(bodies.boxes.size(), 100U);
+    EXPECT_EQ(bodies.capsules.size(), 100U);
 }
 
 // --- Pace ----------------------------------------------------------------------------------------
