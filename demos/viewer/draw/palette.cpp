@@ -78,6 +78,23 @@ const std::array<Colour, 8>& qualitativeColours(Theme theme) {
     return theme == Theme::light ? kLight : kDark;
 }
 
+Colour kindColour(Theme theme, std::size_t kind) {
+    // Searched for, one after the other, as those that are farthest in CIELAB from all before and from black and
+    // white, as seen with and without deuteranopia and protanopia.
+    static constexpr std::array<Colour, 8> kMore{{{40, 40, 230},
+                                                  {192, 230, 154},
+                                                  {154, 40, 40},
+                                                  {40, 40, 154},
+                                                  {78, 40, 97},
+                                                  {59, 116, 230},
+                                                  {230, 192, 97},
+                                                  {116, 40, 59}}};
+    const std::array<Colour, 8>& first = qualitativeColours(theme);
+    static_assert(kMostKinds == 8 + kMore.size());
+    return kind < first.size() ? first[kind]
+                               : kMore[std::min(kind - first.size(), kMore.size() - 1)];
+}
+
 Colour sequentialColour(float share) {
     // Cividis at nine even steps; between them, colours are mixed.
     static constexpr std::array<Colour, 9> kSteps{{{0, 34, 78},

@@ -10,6 +10,7 @@
 #include <demos/viewer/draw/picture.hpp>
 
 #include <array>
+#include <cstddef>
 
 namespace hashphase::demos {
 
@@ -47,6 +48,11 @@ struct ThemeColours {
 
 /// Eight kinds, in the order in which they are best taken.
 [[nodiscard]] const std::array<Colour, 8>& qualitativeColours(Theme theme);
+
+inline constexpr std::size_t kMostKinds = 16;
+
+/// A colour for each of kMostKinds kinds, on the panel: qualitativeColours() first. Kinds beyond share the last one.
+[[nodiscard]] Colour kindColour(Theme theme, std::size_t kind);
 
 /// From dark blue for 0 to yellow for 1; what lies outside is as what is nearest.
 [[nodiscard]] Colour sequentialColour(float share);

@@ -24,8 +24,7 @@ ImU32 packed(Colour colour) {
 }
 
 ImU32 phaseColour(const Session& session, std::size_t row) {
-    const auto& kinds = qualitativeColours(session.options.theme);
-    return packed(kinds[row % kinds.size()]);
+    return packed(kindColour(session.options.theme, row));
 }
 
 // A column a frame, its phases on top of each other; a line where a frame would take 8 ms, named at its end.
