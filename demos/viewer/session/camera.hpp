@@ -78,7 +78,7 @@ private:
     [[nodiscard]] std::array<float*, kStateSize> numbers();
     void keepWithinLimits() { setState(mode_, state()); }
 
-    CameraMode mode_ = CameraMode::top;
+    CameraMode mode_ = CameraMode::free;
     Aabb<float> bounds_;
     std::array<Stand, kCameraModes.size()> stands_;
 };

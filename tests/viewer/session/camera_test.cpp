@@ -43,6 +43,14 @@ void goFar(Session& session, float sign) {
     }
 }
 
+TEST(Camera, FliesAtFirstAndIsAsItWasAfterARestart) {
+    Session session({.name = "wander", .file = {}, .objects = 20, .seed = 1}, 800, 600);
+    EXPECT_EQ(session.camera.mode(), CameraMode::free);
+    session.run("camera top");
+    session.run("restart");
+    EXPECT_EQ(session.camera.mode(), CameraMode::top);
+}
+
 TEST(Camera, StaysWhereAPoseCanPutIt) {
     for (const float sign : {1.0F, -1.0F}) {
         Session session({.name = "wander", .file = {}, .objects = 20, .seed = 1}, 800, 600);
@@ -138,6 +146,7 @@ TEST(FrozenCulling, IsByTheCameraOfTheMomentAtWhichItWasFrozen) {
 
 TEST(Culling, IsByTheCameraOfThePicture) {
     Session session = crowd();
+    session.run("camera top");
     step(session, 1);
     EXPECT_EQ(session.visibleCount(), 2000U);
     session.run("effect culling off");

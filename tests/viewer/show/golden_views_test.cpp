@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
                    {"step 40", "camera free", "pick 120 90", "overlay boxes on"}},
         GoldenView{"selected_in_a_rectangle",
                    kWander,
-                   {"step 20", "box 45 40 150 110", "drag 45 40 150 110"}},
+                   {"camera top", "step 20", "box 45 40 150 110", "drag 45 40 150 110"}},
         GoldenView{"bucket_loads",
                    kWander,
                    {"cell 16", "step 20", "overlay bodies off", "overlay heat on",
@@ -304,6 +304,7 @@ TEST(Panel, ShowsTheRadarAsAMapSeenFromAbove) {
     const HeadlessContext context;
     Viewer viewer(900, 700);
     Session session(kWander, 900, 700);
+    session.run("camera top");
     session.run("effect radar on");
     session.run("overlay bodies off");
     for (int frame = 0; frame < 30; ++frame) {
