@@ -7,6 +7,9 @@ namespace hashphase::demos {
 
 WorldContents::~WorldContents() {
     owners_.clear();
+    for (const auto& action : actions_) {
+        world_.removeAction(action.get());
+    }
     for (const auto& constraint : constraints_) {
         world_.removeConstraint(constraint.get());
     }
@@ -38,6 +41,11 @@ btRigidBody& WorldContents::addBody(btCollisionShape& shape, btScalar mass,
 void WorldContents::addConstraint(std::unique_ptr<btTypedConstraint> constraint) {
     world_.addConstraint(constraint.get(), true);
     constraints_.push_back(std::move(constraint));
+}
+
+void WorldContents::addAction(std::unique_ptr<btActionInterface> action) {
+    world_.addAction(action.get());
+    actions_.push_back(std::move(action));
 }
 
 }  // namespace hashphase::demos

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// What is in a Bullet world, owned: shapes, bodies, constraints. Scenes fill it, and the same calls
+// What is in a Bullet world, owned: shapes, bodies, constraints, actions. Scenes fill it, and the same calls
 // in the same order make identical worlds.
 
 #include <btBulletDynamicsCommon.h>
@@ -44,6 +44,9 @@ public:
     /// Adds the constraint; bodies linked by it do not collide.
     void addConstraint(std::unique_ptr<btTypedConstraint> constraint);
 
+    /// Adds what the world does besides, at the end of each step.
+    void addAction(std::unique_ptr<btActionInterface> action);
+
     /// Keeps something else alive as long as the contents: an importer and its bytes, say.
     void keep(std::shared_ptr<void> owner) { owners_.push_back(std::move(owner)); }
 
@@ -52,6 +55,7 @@ private:
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
+    std::vector<std::unique_ptr<btActionInterface>> actions_;
     std::vector<std::shared_ptr<void>> owners_;
 };
 

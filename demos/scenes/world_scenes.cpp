@@ -3,9 +3,14 @@
 
 #include <demos/scenes/random.hpp>
 
+#include <LinearMath/btAabbUtil2.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
@@ -120,8 +125,42 @@ void fillStaticCity(WorldContents& contents, std::size_t objects, std::uint64_t 
     }
 }
 
-// Bullets without weight that fly to and fro between thin walls, in lanes: each step takes them by
-// thirty walls' thickness.
+/// Fires bullets again, from where they began, once they have left a room.
+class FiresAgain : public btActionInterface {
+public:
+    FiresAgain(const btVector3& low, const btVector3& high) : low_(low), high_(high) {}
+
+    /// As it is now.
+    void add(btRigidBody& bullet) {
+        bullets_.push_back({&bullet, bullet.getWorldTransform(), bullet.getLinearVelocity()});
+    }
+
+    void updateAction(btCollisionWorld* /*world*/, btScalar /*seconds*/) override {
+        for (const Bullet& bullet : bullets_) {
+            const btVector3& place = bullet.body->getWorldTransform().getOrigin();
+            if (!TestPointAgainstAabb2(low_, high_, place)) {
+                bullet.body->setLinearVelocity(bullet.velocity);
+                bullet.body->setAngularVelocity(btVector3(0, 0, 0));
+                bullet.body->setCenterOfMassTransform(bullet.start);
+            }
+        }
+    }
+    void debugDraw(btIDebugDraw* /*drawer*/) override {}
+
+private:
+    struct Bullet {
+        btRigidBody* body;
+        btTransform start;
+        btVector3 velocity;
+    };
+
+    btVector3 low_;
+    btVector3 high_;
+    std::vector<Bullet> bullets_;
+};
+
+// Bullets without weight that fly between thin walls, in lanes: each step takes them by thirty walls'
+// thickness. Those that have passed through the last wall, or fly aside after they have met, are fired again.
 void fillBulletStorm(WorldContents& contents, std::size_t objects, std::uint64_t seed) {
     constexpr btScalar kSpeed = 180;  // [m/s]
     constexpr btScalar kApart = 12;   // from wall to wall [m]
@@ -137,6 +176,9 @@ void fillBulletStorm(WorldContents& contents, std::size_t objects, std::uint64_t
         body.setRestitution(1);
     }
     auto& bullet = contents.addShape<btSphereShape>(btScalar(0.15));
+    auto gun =
+        std::make_unique<FiresAgain>(btVector3(-kApart, -kApart, -halfWidth - kApart),
+                                     btVector3(kApart * kWalls, 8 + kApart, halfWidth + kApart));
     for (std::size_t i = 0; i < objects; ++i) {
         const auto lane = static_cast<btScalar>(i % (kWalls - 1));
         const btScalar x = kApart * (lane + 0.5F) + random.between(-3, 3);
@@ -148,7 +190,9 @@ void fillBulletStorm(WorldContents& contents, std::size_t objects, std::uint64_t
         body.setFriction(0);
         body.setActivationState(DISABLE_DEACTIVATION);
         body.setLinearVelocity(btVector3(random.unit() < 0.5F ? kSpeed : -kSpeed, 0, 0));
+        gun->add(body);
     }
+    contents.addAction(std::move(gun));
 }
 
 constexpr std::array kWorldScenes{
@@ -160,9 +204,10 @@ constexpr std::array kWorldScenes{
     WorldSceneKind{"static-city",
                    "Bullet dynamics: static houses on a plane, and a ball for every 40 of them",
                    20'000, fillStaticCity},
-    WorldSceneKind{"bullet-storm",
-                   "Bullet dynamics: bullets between thin walls, without continuous collision", 500,
-                   fillBulletStorm},
+    WorldSceneKind{
+        "bullet-storm",
+        "Bullet dynamics: a stream of bullets at thin walls, without continuous collision", 500,
+        fillBulletStorm},
 };
 
 }  // namespace

@@ -293,6 +293,46 @@ TEST_P(EveryWorldScene, FillsTwoWorldsAlikeAndSteps) {
     EXPECT_GT(moved, 0);
 }
 
+TEST(BulletStorm, GoesOn) {
+    SmallWorld small;
+    WorldContents contents(small.world);
+    const auto kinds = worldSceneKinds();
+    std::ranges::find(kinds, "bullet-storm", &WorldSceneKind::name)->fill(contents, 200, kSeed);
+    for (int frame = 0; frame < 1200; ++frame) {
+        small.world.stepSimulation(btScalar(1) / 60, 0);
+    }
+    int fast = 0;
+    int between = 0;
+    for (const auto& body : contents.bodies()) {
+        const btVector3& at = body->getWorldTransform().getOrigin();
+        fast += body->getLinearVelocity().length() > 100 ? 1 : 0;
+        between += !body->isStaticObject() && at.x() > 0 && at.x() < 60 && at.y() > 0 && at.y() < 8
+                       ? 1
+                       : 0;
+    }
+    EXPECT_GT(fast, 150);
+    EXPECT_GT(between, 100);
+}
+
+TEST(WorldContents, TakeTheirActionsOutOfTheWorld) {
+    struct Count : btActionInterface {
+        explicit Count(int& steps) : count(&steps) {}
+        void updateAction(btCollisionWorld* /*world*/, btScalar /*seconds*/) override { ++*count; }
+        void debugDraw(btIDebugDraw* /*drawer*/) override {}
+        int* count;
+    };
+    SmallWorld small;
+    int steps = 0;
+    {
+        WorldContents contents(small.world);
+        contents.addAction(std::make_unique<Count>(steps));
+        small.world.stepSimulation(btScalar(1) / 60, 0);
+        EXPECT_EQ(steps, 1);
+    }
+    small.world.stepSimulation(btScalar(1) / 60, 0);
+    EXPECT_EQ(steps, 1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, EveryWorldScene,
                          testing::ValuesIn(worldSceneKinds().begin(), worldSceneKinds().end()),
                          nameOf);

@@ -117,7 +117,7 @@ std::span<const Reading> readings() {
         Reading{"colours", colourCount},
         Reading{"inZones", countInZones},
         Reading{"onRadar", countOnRadar},
-        Reading{"tunnelled", [](Seen s) { return s.stage->tunnelMarks().size(); }},
+        Reading{"tunnelled", [](Seen s) { return s.stage->tunnelCount(); }},
         Reading{"asleep",
                 [](Seen s) {
                     return countBodies(s, [](const StageBody& body) { return body.isAsleep; });

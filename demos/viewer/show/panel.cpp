@@ -191,7 +191,7 @@ void Panel::Switches::showScene(double frameSeconds) const {
     for (const char* reading : {"bodies", "visible", "pairs", "selected"}) {
         count(reading, reading);
     }
-    if (!session.stage->tunnelMarks().empty()) {
+    if (session.stage->tunnelCount() > 0) {
         count("passed through walls", "tunnelled");
     }
     count("frame", "frame");

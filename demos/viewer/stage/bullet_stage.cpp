@@ -15,8 +15,9 @@
 namespace hashphase::demos {
 namespace {
 
-constexpr float kRoomForAll = 500;        // around what is there, for axis sweeps [m]
-constexpr std::size_t kMostMarks = 2000;  // of tunnels
+constexpr float kRoomForAll = 500;           // around what is there, for axis sweeps [m]
+constexpr std::ptrdiff_t kMostMarks = 2000;  // of tunnels: the last ones
+constexpr std::uint64_t kMarkFrames = 15;    // in which each is shown
 
 Aabb<float> boxOf(const btBroadphaseProxy& proxy) {
     return toAabb(proxy.m_aabbMin, proxy.m_aabbMax);
@@ -29,6 +30,13 @@ Aabb<float> presentBox(const btRigidBody& body) {
     body.getAabb(low, high);
     const Vector3<float> margin = Vector3<float>::Constant(gContactBreakingThreshold);
     return {toEigen(low) - margin, toEigen(high) + margin};
+}
+
+/// Whether a sphere has moved by more than its radius. One that is farther than its speed takes it was put there.
+bool hasFlown(const StageBody& sphere, const Vector3<float>& before) {
+    const float radius = sphere.size.x();
+    const float way = (sphere.centre - before).norm();
+    return way > radius && way <= 2 * sphere.speed * kFrameSeconds + radius;
 }
 
 /// The time of all zones of that name that lie in none of the same name [ms].
@@ -142,15 +150,17 @@ void BulletStage::fileWhereBodiesAre() {
 // Marks spheres that have moved by more than their radius and have a static box between where they were and
 // where they are. Cost: a ray for each sphere that is so fast.
 void BulletStage::markTunnels() {
+    ++frame_;
+    std::erase_if(tunnelMarks_,
+                  [this](const TunnelMark& mark) { return mark.frame + kMarkFrames <= frame_; });
     std::vector<Picked<float>> picked;
-    for (std::uint32_t index = 0; index < before_.size() && tunnelMarks_.size() < kMostMarks;
-         ++index) {
+    for (std::uint32_t index = 0; index < before_.size(); ++index) {
         const StageBody mover = body(index);
-        const Vector3<float> way = mover.centre - before_[index];
         if (mover.shape != StageBody::Shape::sphere || mover.isStatic ||
-            way.squaredNorm() <= mover.size.x() * mover.size.x()) {
+            !hasFlown(mover, before_[index])) {
             continue;
         }
+        const Vector3<float> way = mover.centre - before_[index];
         pickAll(*grid(), RayRegion<float>(before_[index], mover.centre), picked);
         const bool isThrough = std::ranges::any_of(picked, [&](const Picked<float>& met) {
             const StageBody wall = body(met.id.index);
@@ -159,8 +169,12 @@ void BulletStage::markTunnels() {
                    meets(wall, mover.centre, -way).value_or(0) > 0;
         });
         if (isThrough) {
-            tunnelMarks_.push_back({before_[index], mover.centre});
+            ++tunnelCount_;
+            tunnelMarks_.push_back({before_[index], mover.centre, frame_});
         }
+    }
+    if (std::ssize(tunnelMarks_) > kMostMarks) {
+        tunnelMarks_.erase(tunnelMarks_.begin(), tunnelMarks_.end() - kMostMarks);
     }
 }
 

@@ -60,6 +60,7 @@ private:
     std::unique_ptr<SecondIndex> second_;
     Observers<float> ownObservers_;
     std::size_t size_ = 0;
+    std::uint64_t frame_ = 0;
     std::array<Vector3<float>, 6> ground_;
     std::vector<Aabb<float>> given_;      // boxes of which pairs were found, by index
     std::vector<Vector3<float>> before_;  // where bodies were before the frame, by index

@@ -73,10 +73,11 @@ struct StageBody {
     return {box.min() - room, box.max() + room};
 }
 
-/// A place where something fast has passed through a wall.
+/// The way on which something fast has passed through a wall in a frame.
 struct TunnelMark {
     Vector3<float> from;
     Vector3<float> to;
+    std::uint64_t frame = 0;
 };
 
 /// A ball that knows who is in it.
@@ -124,7 +125,9 @@ public:
     /// Where bodies are to begin with, or may be.
     [[nodiscard]] const Aabb<float>& bounds() const noexcept { return bounds_; }
 
+    /// Those of the last frames; and how many there have been in all.
     [[nodiscard]] std::span<const TunnelMark> tunnelMarks() const noexcept { return tunnelMarks_; }
+    [[nodiscard]] std::uint64_t tunnelCount() const noexcept { return tunnelCount_; }
 
     /// The same number where all bodies are at the same places, to the last bit.
     [[nodiscard]] virtual std::uint64_t placesHash() const = 0;
@@ -209,6 +212,7 @@ protected:
     Observers<float>* observers_ = nullptr;  // those of the one who derives
     Aabb<float> bounds_;
     std::vector<TunnelMark> tunnelMarks_;
+    std::uint64_t tunnelCount_ = 0;
     std::vector<ProfileZone> zones_;
     PhaseClock clock_;
 

@@ -142,7 +142,24 @@ TEST(BulletStage, MarksWhatPassesThroughWallsUnlessItIsSwept) {
     EXPECT_EQ(swept.tunnelMarks().size(), 0U);
     for (const TunnelMark& mark : discrete.tunnelMarks()) {
         EXPECT_GT((mark.to - mark.from).norm(), 1);
+        EXPECT_LT((mark.to - mark.from).norm(), 7) << "was put there, and has not flown";
     }
+}
+
+TEST(BulletStage, GoesOnMarkingMissesAndShowsTheLastOnes) {
+    BulletStage stage(worldNamed("bullet-storm"), 60, 1);
+    const auto missesIn = [&stage](int frames) {
+        const std::uint64_t before = stage.tunnelCount();
+        for (int frame = 0; frame < frames; ++frame) {
+            stage.step();
+        }
+        return stage.tunnelCount() - before;
+    };
+    const std::uint64_t first = missesIn(300);
+    EXPECT_GT(missesIn(300), first / 2);
+    EXPECT_LT(stage.tunnelMarks().size(), first);
+    const std::uint64_t last = missesIn(15);
+    EXPECT_EQ(stage.tunnelMarks().size(), last);
 }
 
 TEST(BulletStage, ShowsWhoLooksWhereBodiesAreThoughBulletFilesWhereTheyWere) {
