@@ -30,7 +30,7 @@ std::uint64_t fromHexadecimal(const std::string& text) {
     const char* const end = text.data() + text.size();
     if (!text.starts_with("0x") ||
         std::from_chars(text.data() + 2, end, number, 16) != std::from_chars_result{end, {}}) {
-        throw InputError("'" + text + "' is no hash, which is 0x and up to 16 digits");
+        throw InputError("'" + text + "' is not a hash: 0x and up to 16 digits");
     }
     return number;
 }
@@ -47,12 +47,12 @@ std::uint64_t countIn(const Json& json, const char* name, std::uint64_t most) {
 
 void requireVersion(const Json& json) {
     if (json.at("schema") != "hashphase/wander-recording") {
-        throw InputError("it is no recording of hashphase wander");
+        throw InputError("it is not a recording of hashphase wander");
     }
     if (const Json& version = json.at("version"); version != kVersion) {
-        throw InputError("it is of version " + version.dump() + ", and this program plays back " +
-                         std::to_string(kVersion) +
-                         " alone, with which agents' colours are compared as well: record it anew");
+        throw InputError("it is of version " + version.dump() +
+                         ", and this program replays version " + std::to_string(kVersion) +
+                         ", which also compares agents' colours: record it again");
     }
 }
 
@@ -60,7 +60,7 @@ void requireVersion(const Json& json) {
 void requireLogged(const std::string& line) {
     const CommandKind* const kind = findCommand(line);
     if (kind == nullptr || !isLogged(kind->role)) {
-        throw InputError("'" + line + "' is no command of a recording");
+        throw InputError("'" + line + "' is not a command of a recording");
     }
 }
 

@@ -171,8 +171,8 @@ const BroadphaseKind& nextQuickKind(const Session& session, std::string& skipped
         if (session.stage->size() <= kind.liveUpTo) {
             return kind;
         }
-        skipped += (skipped.empty() ? "" : " and ") + std::string(kind.name) + " (for up to " +
-                   withThousands(kind.liveUpTo) + ")";
+        skipped += (skipped.empty() ? "" : " and ") + std::string(kind.name) + " (up to " +
+                   withThousands(kind.liveUpTo) + " bodies)";
     }
 }
 
@@ -185,9 +185,9 @@ void broadphase(Session& session, const Arguments& given) {
     std::string skipped;
     session.setBroadphase(nextQuickKind(session, skipped));
     if (!skipped.empty()) {
-        session.say("passed over " + skipped + ", as there are " +
+        session.say("skipped " + skipped + ", because there are " +
                     withThousands(session.stage->size()) +
-                    " bodies; \"broadphase NAME\" takes one all the same");
+                    "; \"broadphase NAME\" selects one anyway");
     }
 }
 
@@ -200,7 +200,8 @@ void changeGrid(Session& session, double GridConfig::*variable, double value) {
 void radius(Session& session, const Arguments& given) {
     SceneEffects effects = session.stage->effects();
     if (!effects.proximity) {
-        throw InputError("The radius is that of proximity: run \"effect proximity on\" before.");
+        throw InputError(
+            "The radius belongs to the effect proximity: run \"effect proximity on\" first.");
     }
     effects.proximity->radius = given.numbers[0];
     session.declare(effects);
@@ -241,7 +242,7 @@ void push(Session& session, const Arguments& given) {
     const auto pushed = std::ranges::count_if(session.selected, [&](std::uint32_t index) {
         return session.stage->push(index, velocity);
     });
-    session.say("pushed " + withThousands(static_cast<std::uint64_t>(pushed)));
+    session.say("pushed " + bodiesText(static_cast<std::uint64_t>(pushed)));
 }
 
 void overlay(Session& session, const Arguments& given) {
@@ -255,7 +256,7 @@ void save(Session& session, const Arguments& given) {
     const std::string path = given.has(0) ? given.words[0] : "hashphase-wander.json";
     ResultFile file(path);
     file.write([&session](std::ostream& out) { out << session.log.text(); });
-    session.say("recorded " + withThousands(session.log.frames) + " frames in " + path);
+    session.say("wrote a recording of " + withThousands(session.log.frames) + " frames to " + path);
 }
 
 void print(Session& session, const Arguments& given) {
@@ -273,7 +274,7 @@ void expect(Session& session, const Arguments& given) {
                                     read<wanted, read <= wanted, read> wanted, read >= wanted};
     if (!holds[given.index(1)]) {
         session.noteFailure("frame " + std::to_string(session.frame) + ": " + given.words[0] +
-                            " is " + plain(read) + ", but was to be " + given.words[1] + " " +
+                            " is " + plain(read) + ", expected " + given.words[1] + " " +
                             plain(wanted));
     }
 }
@@ -290,114 +291,116 @@ std::vector<CommandKind> makeCommands() {
                             CommandKind::Action run, std::vector<Parameter> parameters = {}) {
         all.push_back({firstWord(usage), role, usage, help, std::move(parameters), run});
     };
-    add(chooses, "scene NAME|next|previous", "put another scene on stage", scene,
-        {{.isOptional = true}});
-    add(chooses, "objects N", "begin again with so many bodies", objects,
+    add(chooses, "scene NAME|next|previous", "show another scene", scene, {{.isOptional = true}});
+    add(chooses, "objects N", "restart the scene with N bodies", objects,
         {wholeFrom(1, kMostObjects)});
-    add(chooses, "seed N", "begin again with another seed", seed, {wholeFrom(0, kMostSeed)});
-    add(steers, "restart", "begin again", [](S s, A) { s.choose(s.choice); });
-    add(steers, "pause [on|off]", "stand still, or go on", pause);
-    add(steers, "step [N]", "stand still after so many frames",
+    add(chooses, "seed N", "restart the scene with another seed", seed, {wholeFrom(0, kMostSeed)});
+    add(steers, "restart", "restart the scene", [](S s, A) { s.choose(s.choice); });
+    add(steers, "pause [on|off]", "pause or play", pause);
+    add(steers, "step [N]", "simulate N frames (default: 1), then pause",
         [](S s, A a) { s.askForSteps(a.has(0) ? a.index(0) : 1); }, {wholeFrom(1, 1e6)});
     add(changes, "effect NAME [on|off]",
-        "declare an effect as the scene does, with what it needs, or take it back", effect,
+        "switch an effect on, with all effects that it needs, or off", effect,
         {oneOf("effect", kAllEffects, nameOf)});
-    add(changes, "broadphase NAME|next", "who finds the pairs; the next one that is quick enough",
-        broadphase, {oneBroadphaseOrNext()});
-    add(shows, "check [on|off]", "compare all pairs with the exact ones",
+    add(changes, "broadphase NAME|next",
+        "find pairs with this broadphase, or with the next one that is fast enough", broadphase,
+        {oneBroadphaseOrNext()});
+    add(shows, "check [on|off]", "compare all pairs with the exact pairs in each frame",
         [](S s, A a) { s.setChecking(a.onOff(0, s.isChecking)); });
-    add(changes, "cell SIZE", "edge of the grid's cells [m]; 0 chooses by itself",
+    add(changes, "cell SIZE", "cell size of the grid [m]; 0: automatic",
         [](S s, A a) { changeGrid(s, &GridConfig::cellSize, a.numbers[0]); },
         {fileField("grid", "cellSize")});
-    add(changes, "ratio RATIO", "between the grid's levels, where the cell size is fixed",
+    add(changes, "ratio RATIO",
+        "ratio of cell sizes between levels of the grid, if the cell size is fixed",
         [](S s, A a) { changeGrid(s, &GridConfig::levelRatio, a.numbers[0]); },
         {fileField("grid", "levelRatio")});
-    add(changes, "radius R", "how far agents look around [m]", radius,
+    add(changes, "radius R", "radius in which agents look for neighbours [m]", radius,
         {fileField("effects.proximity", "radius")});
-    add(changes, "camera " + anyOf(kCameraModes), "look from above, fly, or follow who is picked",
+    add(changes, "camera " + anyOf(kCameraModes), "look from above, fly, or follow the picked body",
         [](S s, A a) { s.setCameraMode(static_cast<CameraMode>(a.index(0))); });
-    add(changes, "home", "take the camera to where it began", [](S s, A) { s.goHome(); });
+    add(changes, "home", "reset the camera", [](S s, A) { s.goHome(); });
     add(changes, "move RIGHT UP FORWARD", "move the camera [m]",
         [](S s, A a) { s.camera.move(vectorAt(a, 0)); }, {kFar});
     add(changes, "turn LEFT UP", "turn the camera [degrees]",
         [](S s, A a) { s.camera.turn(radiansAt(a, 0), radiansAt(a, 1)); }, {kDegrees});
-    add(changes, "zoom FACTOR", "go nearer (above 1) or farther away",
+    add(changes, "zoom FACTOR", "move the camera nearer (above 1) or farther away",
         [](S s, A a) { s.camera.zoom(a.number(0)); }, {numberFrom(0.01, 100)});
-    add(changes, "eye X Y Z YAW PITCH", "put the free camera there [m, degrees]",
+    add(changes, "eye X Y Z YAW PITCH", "place the free camera [m, degrees]",
         [](S s, A a) { s.camera.place(vectorAt(a, 0), radiansAt(a, 3), radiansAt(a, 4)); },
         {kFar, kFar, kFar, kDegrees});
-    add(changes, "pose MODE NUMBER...", "put the camera as a recording has it", pose, ofPose());
-    add(changes, "freeze [on|off]", "cull by the camera of this moment, and look from outside",
+    add(changes, "pose MODE NUMBER...", "place the camera, as in a recording", pose, ofPose());
+    add(changes, "freeze [on|off]", "keep culling by the present frustum while the camera moves",
         [](S s, A a) { s.freeze(a.onOff(0, s.frozen.has_value())); });
-    add(changes, "size WIDTH HEIGHT", "of the picture, up to 8,192 each way [pixels]", size,
+    add(changes, "size WIDTH HEIGHT", "set the picture's size, up to 8,192 x 8,192 [pixels]", size,
         {wholeFrom(kLeastSide, kMostSide)});
-    add(changes, "pick X Y", "ask who is at the pixel", [](S s, A a) { s.pick(pixelAt(a, 0)); },
+    add(changes, "pick X Y", "pick the body at a pixel", [](S s, A a) { s.pick(pixelAt(a, 0)); },
         {kFar});
-    add(changes, "box X0 Y0 X1 Y1", "select who is between two pixels", box, {kFar});
+    add(changes, "box X0 Y0 X1 Y1", "select the bodies between two pixels", box, {kFar});
     add(changes, "drag X0 Y0 X1 Y1", "show the rectangle between two pixels", drag, {kFar});
-    add(changes, "clear", "select nobody", clear);
-    add(changes, "push [X Y Z]", "add a velocity to who is selected [m/s]", push, {kFar});
-    add(changes, "delete", "remove who is selected",
-        [](S s, A) { s.say("removed " + withThousands(s.removeSelected())); });
-    add(changes, "recolour", "mark who is selected",
-        [](S s, A) { s.say("recoloured " + withThousands(s.recolourSelected())); });
-    add(shows, "colour [" + anyOf(kColourings) + "|next]", "what colours tell",
+    add(changes, "clear", "clear the selection", clear);
+    add(changes, "push [X Y Z]", "add a velocity to the selected bodies [m/s]", push, {kFar});
+    add(changes, "delete", "remove the selected bodies",
+        [](S s, A) { s.say("removed " + bodiesText(s.removeSelected())); });
+    add(changes, "recolour", "mark the selected bodies",
+        [](S s, A) { s.say("marked " + bodiesText(s.recolourSelected())); });
+    add(shows, "colour [" + anyOf(kColourings) + "|next]", "choose what the colours of bodies show",
         [](S s, A a) { chooseOrNext(a, kColourings.size(), s.options.colouring); },
         {{.what = "colouring"}});
-    add(shows, "overlay " + anyOf(kOverlays) + " [on|off]",
-        "what is shown of the scene, and laid over it", overlay);
-    add(shows, "dots PIXELS", "draw bodies at least with that radius",
+    add(shows, "overlay " + anyOf(kOverlays) + " [on|off]", "show or hide a part of the picture",
+        overlay);
+    add(shows, "dots PIXELS", "draw bodies with at least this radius [pixels]",
         [](S s, A a) { s.options.dots = a.number(0); }, {numberFrom(0, 20)});
-    add(shows, "theme [" + anyOf(kThemes) + "|next]", "light or dark",
+    add(shows, "theme [" + anyOf(kThemes) + "|next]", "choose the light or the dark theme",
         [](S s, A a) { chooseOrNext(a, kThemes.size(), s.options.theme); });
-    add(steers, "panel [on|off]", "show the panel",
+    add(steers, "panel [on|off]", "show or hide the panel",
         [](S s, A a) { s.options.panel = a.onOff(0, s.options.panel); });
-    add(steers, "help [on|off]", "show keys and commands",
+    add(steers, "help [on|off]", "show or hide the list of keys",
         [](S s, A a) { s.options.help = a.onOff(0, s.options.help); });
-    add(writes, "screenshot [FILE]", "write a picture (PNG)",
+    add(writes, "screenshot [FILE]", "write the picture to a file (PNG)",
         [](S s, A a) { s.askForScreenshot(a.has(0) ? a.words[0] : "hashphase.png"); });
-    add(writes, "save [FILE]", "write a recording of all that was done since the scene began",
+    add(writes, "save [FILE]", "write a recording of all commands since the scene began (JSON)",
         save);
     add(writes, "capture FILE [FRAMES]",
-        "write the boxes of so many frames as they are simulated (.aabbs)",
+        "simulate FRAMES frames (default: 60) and write all boxes (.aabbs)",
         [](S s, A a) { s.capture(a.words[0], a.has(1) ? static_cast<int>(a.index(1)) : 60); },
         {kWord, wholeFrom(1, 1e6)});
     add(steers, "quit", "end the program", [](S s, A) { s.isOver = true; });
-    add(steers, "print READING...", "say numbers", print);
-    add(steers, "expect READING " + anyOf(kRelations) + " NUMBER", "complain unless it is so",
-        expect, {kWord, {.what = "relation"}, numberFrom(-1e18, 1e18)});
+    add(steers, "print READING...", "print numbers", print);
+    add(steers, "expect READING " + anyOf(kRelations) + " NUMBER",
+        "fail unless a number is as expected", expect,
+        {kWord, {.what = "relation"}, numberFrom(-1e18, 1e18)});
     return all;
 }
 
 constexpr std::array kKeys{
-    KeyBinding{"P", "pause", "pause and go on"},
-    KeyBinding{"O", "step", "one frame"},
-    KeyBinding{"R", "restart", "begin again"},
-    KeyBinding{"[", "scene previous", "scene before"},
-    KeyBinding{"]", "scene next", "scene after"},
+    KeyBinding{"P", "pause", "pause or play"},
+    KeyBinding{"O", "step", "simulate one frame"},
+    KeyBinding{"R", "restart", "restart the scene"},
+    KeyBinding{"[", "scene previous", "previous scene"},
+    KeyBinding{"]", "scene next", "next scene"},
     KeyBinding{"1", "camera top", "look from above"},
     KeyBinding{"2", "camera free", "fly (W A S D, Q E, right button)"},
-    KeyBinding{"3", "camera follow", "follow who is picked"},
-    KeyBinding{"Home", "home", "camera where it began"},
-    KeyBinding{"C", "effect culling", "cull or not"},
-    KeyBinding{"F", "freeze", "freeze the frustum, and look from outside"},
+    KeyBinding{"3", "camera follow", "follow the picked body"},
+    KeyBinding{"Home", "home", "reset the camera"},
+    KeyBinding{"C", "effect culling", "culling on or off"},
+    KeyBinding{"F", "freeze", "freeze the frustum, to see it from outside"},
     KeyBinding{"B", "broadphase next", "next broadphase"},
-    KeyBinding{"V", "check", "verify all pairs"},
+    KeyBinding{"V", "check", "verify all pairs, or stop"},
     KeyBinding{"G", "overlay grid", "grid lines"},
     KeyBinding{"H", "overlay heat", "bucket loads as a heat map"},
-    KeyBinding{"X", "overlay boxes", "boxes of who is selected"},
+    KeyBinding{"X", "overlay boxes", "boxes of selected bodies"},
     KeyBinding{"L", "overlay pairs", "lines between pairs"},
-    KeyBinding{"M", "colour next", "what colours tell"},
-    KeyBinding{"T", "theme", "light or dark"},
-    KeyBinding{"U", "push", "push who is selected"},
-    KeyBinding{"K", "recolour", "mark who is selected"},
-    KeyBinding{"Delete", "delete", "remove who is selected"},
-    KeyBinding{"Escape", "clear", "select nobody"},
-    KeyBinding{"Tab", "panel", "hide or show the panel"},
-    KeyBinding{"F1", "help", "this help"},
+    KeyBinding{"M", "colour next", "next meaning of colours"},
+    KeyBinding{"T", "theme", "light or dark theme"},
+    KeyBinding{"U", "push", "push the selected bodies"},
+    KeyBinding{"K", "recolour", "mark the selected bodies"},
+    KeyBinding{"Delete", "delete", "remove the selected bodies"},
+    KeyBinding{"Escape", "clear", "clear the selection"},
+    KeyBinding{"Tab", "panel", "show or hide the panel"},
+    KeyBinding{"F1", "help", "show or hide this help"},
     KeyBinding{"F5", "save", "save a recording"},
-    KeyBinding{"F10", "quit", "end"},
-    KeyBinding{"F12", "screenshot", "write a picture"},
+    KeyBinding{"F10", "quit", "end the program"},
+    KeyBinding{"F12", "screenshot", "write the picture to a file"},
 };
 
 }  // namespace

@@ -23,20 +23,20 @@ const Thing& need(const Thing& thing, bool isThere, const char* fault) {
 }
 
 const InfoCard& cardOf(const Session& session) {
-    return *need(session.card, session.card.has_value(), "Nobody is picked.");
+    return *need(session.card, session.card.has_value(), "No body is picked: run \"pick X Y\".");
 }
 
 const PairCheck& checkOf(const Session& session) {
     return need(session.pairCheck, session.check() != nullptr,
                 session.canCheck() ? "Pairs are verified after the next frame: run \"step\"."
-                                   : "Pairs are not verified: run \"check on\" and a step, with "
-                                     "pairs and without sweep.");
+                                   : "Pairs are not verified: run \"check on\" and \"step\", with "
+                                     "the effect pairs and without sweep.");
 }
 
 const CellLoads& loadsOf(const Session& session) {
     return need(session.loads, !session.loads.isEmpty(),
-                "Loads are not counted: run \"overlay heat on\" and a step, with an effect that "
-                "asks the grid.");
+                "Loads are not counted: run \"overlay heat on\" and \"step\", with an effect that "
+                "uses the grid.");
 }
 
 template <class Holds>
@@ -59,7 +59,7 @@ std::size_t colourCount(const Session& session) {
 // A body in two of them counts twice.
 std::size_t countInZones(const Session& session) {
     need(session, session.stage->effects().zones.has_value(),
-         "No zones are declared: run \"effect zones on\" and a step.");
+         "There are no zones: run \"effect zones on\" and \"step\".");
     std::size_t count = 0;
     for (const InterestZone& zone : session.stage->interestZones()) {
         count += zone.bodyCount;
@@ -69,7 +69,7 @@ std::size_t countInZones(const Session& session) {
 
 std::uint64_t countOnRadar(const Session& session) {
     const std::optional<RadarView>& radar = session.stage->radar();
-    need(radar, radar.has_value(), "The radar has not looked: run \"effect radar on\" and a step.");
+    need(radar, radar.has_value(), "The radar has no data: run \"effect radar on\" and \"step\".");
     return std::accumulate(radar->counts.begin(), radar->counts.end(), std::uint64_t{0});
 }
 
@@ -80,7 +80,7 @@ std::int64_t memoryOf(const Session& session) {
 
 const FormerTimes& formerOf(const Session& session) {
     return *need(session.former, session.former.has_value(),
-                 "There are no times of another broadphase: run \"step\", and then \"broadphase "
+                 "There are no times with another broadphase: run \"step\", and then \"broadphase "
                  "next\".");
 }
 

@@ -18,7 +18,7 @@ Script::Script(std::string_view text, std::string name) : name_(std::move(name))
     }
     if (std::all_of(lines_.begin(), lines_.end(),
                     [](const std::string& line) { return firstWord(line).empty(); })) {
-        throw InputError(name_ + " holds no command.");
+        throw InputError(name_ + " contains no command.");
     }
 }
 
@@ -61,8 +61,9 @@ void Playback::feed(Session& session) {
 void Playback::refuseChange(std::string_view line) {
     const CommandKind* const kind = findCommand(line);
     if (kind != nullptr && !leavesReplay(kind->role)) {
-        throw InputError("A recording is being replayed: '" + std::string(kind->name) +
-                         "' would make it another one. Pause (P), step (O) or begin again (R).");
+        throw InputError("'" + std::string(kind->name) +
+                         "' would change the recording that is replayed. Pause (P), step (O) or "
+                         "restart (R).");
     }
 }
 
@@ -72,8 +73,7 @@ std::string Playback::verdict(const Session& session, bool& isSame) const {
     const std::uint64_t same = log_.sameUntil(session.log);
     isSame = same == reached;
     if (!isSame) {
-        return "replay: not the same after frame " + withThousands(same) + " of " +
-               withThousands(all);
+        return "replay: differs after frame " + withThousands(same) + " of " + withThousands(all);
     }
     if (reached == all) {
         return "replay: all " + withThousands(all) + " frames are the same, to the last bit";

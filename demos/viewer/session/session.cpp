@@ -233,7 +233,7 @@ void Session::goHome() {
 
 void Session::setCameraMode(CameraMode mode) {
     if (mode == CameraMode::follow && !picked) {
-        throw InputError("Nobody is picked to be followed: click on a body, or run \"pick X Y\".");
+        throw InputError("No body is picked to follow: click a body, or run \"pick X Y\".");
     }
     camera.setMode(mode);
     aim();
@@ -265,9 +265,9 @@ void Session::setBroadphase(const BroadphaseKind& kind) {
     knowsPairs = false;
     framesToRead = 0;
     if (const std::size_t bodies = stage->size(); bodies > kind.liveUpTo) {
-        say(std::string(kind.name) + " takes a time that grows with the square of the bodies: " +
-            withThousands(bodies) + " are many, above " + withThousands(kind.liveUpTo) +
-            " the scene may stand still for long.");
+        say(std::string(kind.name) + " takes time proportional to the square of the bodies: with " +
+            withThousands(bodies) + ", more than " + withThousands(kind.liveUpTo) +
+            ", a frame may take long.");
         framesToRead = kFramesToRead;
     }
 }
@@ -300,7 +300,7 @@ hashphase::Camera<float> Session::view() const {
 
 void Session::pick(const Pixel& pixel) {
     if (!stage->effects().picking) {
-        throw InputError("Picking is not declared: run \"effect picking on\".");
+        throw InputError("Picking is off: run \"effect picking on\".");
     }
     const Picked<float> found = stage->pick(view().rayThrough(pixel));
     forgetSelection();
@@ -314,7 +314,7 @@ void Session::pick(const Pixel& pixel) {
 
 void Session::selectBetween(const Pixel& a, const Pixel& b) {
     if (!stage->effects().boxSelection || stage->grid() == nullptr) {
-        throw InputError("Box selection is not declared: run \"effect boxSelection on\".");
+        throw InputError("Box selection is off: run \"effect boxSelection on\".");
     }
     std::vector<ProxyId> found;
     stage->observers().select({*stage->grid()}, view(), a, b, found);
@@ -353,8 +353,8 @@ std::size_t Session::recolourSelected() {
 
 void Session::capture(const std::string& path, int frames) {
     if (recorder != nullptr) {
-        throw InputError("Boxes are captured to " + recorder->path() +
-                         " already: " + recorder->progress() + " are there.");
+        throw InputError("A capture to " + recorder->path() +
+                         " is under way: " + recorder->progress() + " are written.");
     }
     recorder = std::make_unique<BoxRecorder>(path, titleOf(choice), *stage, frames);
     stepsWaiting = std::max(stepsWaiting, static_cast<std::uint64_t>(frames));
@@ -402,6 +402,10 @@ const PairCheck* Session::check() const {
 
 bool Session::canCheck() const {
     return isChecking && stage->effects().pairs && !stage->effects().sweep;
+}
+
+std::string bodiesText(std::uint64_t count) {
+    return withThousands(count) + (count == 1 ? " body" : " bodies");
 }
 
 }  // namespace hashphase::demos

@@ -220,4 +220,7 @@ struct Reading {
 
 [[nodiscard]] std::span<const Reading> readings();
 
+/// "1 body", "30,000 bodies".
+[[nodiscard]] std::string bodiesText(std::uint64_t count);
+
 }  // namespace hashphase::demos

@@ -16,7 +16,7 @@ Badge pairBadge(const Session& session) {
         return {"pairs are verified after the next frame", colours.unknown};
     }
     if (check == nullptr) {
-        return {"pairs are not verified: none are declared, or they are swept", colours.warning};
+        return {"pairs are not verified: the effect pairs is off, or sweep is on", colours.warning};
     }
     const std::string exact = withThousands(check->exact.size());
     if (!check->missing.empty()) {
@@ -25,11 +25,11 @@ Badge pairBadge(const Session& session) {
                 colours.alert, true};
     }
     if (!check->extra.empty()) {
-        return {"all " + exact + " pairs found, and " + withThousands(check->extra.size()) +
+        return {"all " + exact + " pairs found, plus " + withThousands(check->extra.size()) +
                     " that do not overlap",
                 colours.warning};
     }
-    return {"all " + exact + " pairs found, and no other", colours.confirmed};
+    return {"all " + exact + " pairs found, no false ones", colours.confirmed};
 }
 
 /// Where the camera shows a place; nothing where that is not in the picture.
@@ -72,8 +72,7 @@ std::vector<Label> zoneLabels(const Session& session) {
     std::vector<Label> labels;
     for (const InterestZone& zone : session.stage->interestZones()) {
         if (const auto middle = onScreen(session, zone.centre)) {
-            labels.push_back({*middle, withThousands(zone.bodyCount) +
-                                           (zone.bodyCount == 1 ? " body" : " bodies")});
+            labels.push_back({*middle, bodiesText(zone.bodyCount)});
         }
     }
     return labels;

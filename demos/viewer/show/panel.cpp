@@ -183,7 +183,7 @@ void Panel::Switches::showScene(double frameSeconds) const {
     const std::string title = titleOf(session.choice);
     ImGui::TextUnformatted(title.c_str());
     if (frameSeconds > 0) {
-        alignRight(fixed(1 / frameSeconds, 0) + " pictures a second");
+        alignRight(fixed(1 / frameSeconds, 0) + " frames per second");
     }
     const auto count = [this](const char* label, const char* reading) {
         numberRow(label, withThousands(static_cast<std::uint64_t>(session.reading(reading))));
@@ -192,11 +192,11 @@ void Panel::Switches::showScene(double frameSeconds) const {
         count(reading, reading);
     }
     if (session.stage->tunnelCount() > 0) {
-        count("passed through walls", "tunnelled");
+        count("misses: passed through walls", "tunnelled");
     }
     count("frame", "frame");
     const std::optional<std::int64_t> bytes = session.stage->memoryBytes();
-    numberRow("memory of grid and tables", bytes ? byteSize(*bytes) : "n/a");
+    numberRow("memory of all tables", bytes ? byteSize(*bytes) : "n/a");
     press(session.isPlaying ? "pause (P)" : "play (P)", "pause", true);
     press("step (O)", "step");
     press("restart (R)", "restart");
@@ -225,7 +225,7 @@ void Panel::Switches::showEffects() const {
     }
     ImGui::PopStyleVar();
     if (const auto& proximity = session.stage->effects().proximity) {
-        slide("agents' radius [m]", proximity->radius, 0.5F, 30, "radius", 1, "%.1f");
+        slide("agent radius [m]", proximity->radius, 0.5F, 30, "radius", 1, "%.1f");
     }
 }
 
@@ -240,10 +240,10 @@ void Panel::Switches::showGrid() const {
     slide("cell size [m]", config.cellSize, 0, 100, "cell", 1,
           config.cellSize == 0 ? "automatic" : "%.1f", ImGuiSliderFlags_Logarithmic);
     if (config.cellSize > 0) {
-        slide("levels' ratio", config.levelRatio, 2, 16, "ratio", 0, "%.0f");
+        slide("level ratio", config.levelRatio, 2, 16, "ratio", 0, "%.0f");
     }
     if (const Grid<float>* grid = session.stage->grid()) {
-        numberRow("finest cells [m]", fixed(double{grid->cellSize()}, 2));
+        numberRow("finest cell size [m]", fixed(double{grid->cellSize()}, 2));
     }
 }
 
@@ -261,7 +261,7 @@ void Panel::Switches::showView() const {
             run("camera " + name);
         }
     }
-    check("freeze the frustum (F)", session.frozen.has_value(), "freeze");
+    check("freeze frustum (F)", session.frozen.has_value(), "freeze");
     for (std::size_t i = 0; i < kOverlays.size(); ++i) {
         if (i > 0) {
             ImGui::SameLine();
@@ -269,11 +269,11 @@ void Panel::Switches::showView() const {
         const std::string name(kOverlays[i]);
         check(name, session.options.overlays[i], "overlay " + name);
     }
-    choose("colours tell (M)",
+    choose("colour by (M)",
            std::string(kColourings[static_cast<std::size_t>(session.options.colouring)]), "colour",
            kColourings);
-    slide("least dot [pixels]", session.options.dots, 0, 8, "dots", 1, "%.1f");
-    press("light or dark (T)", "theme", true);
+    slide("smallest radius [pixels]", session.options.dots, 0, 8, "dots", 1, "%.1f");
+    press("light or dark theme (T)", "theme", true);
 }
 
 }  // namespace hashphase::demos

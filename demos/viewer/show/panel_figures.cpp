@@ -204,15 +204,16 @@ void showCard(const Session& session) {
     ImGui::TextColored(colourOf(palette(session.options.theme).picked), "body %u", card.index);
     numberRow("cell", std::to_string(card.cell[0]) + ", " + std::to_string(card.cell[1]) + ", " +
                           std::to_string(card.cell[2]));
-    numberRow("bodies in that cell", withThousands(card.load));
-    numberRow("within " + fixed(double{card.radius}, 1) + " m", withThousands(card.neighbours));
+    numberRow("bodies in this cell", withThousands(card.load));
+    numberRow("bodies within " + fixed(double{card.radius}, 1) + " m",
+              withThousands(card.neighbours));
     numberRow("candidate pairs", withThousands(card.candidates));
     numberRow("speed [m/s]", fixed(double{card.body.speed}, 1));
     const Vector3<float>& at = card.body.centre;
-    numberRow("at [m]", fixed(double{at.x()}, 1) + ", " + fixed(double{at.y()}, 1) + ", " +
-                            fixed(double{at.z()}, 1));
+    numberRow("position [m]", fixed(double{at.x()}, 1) + ", " + fixed(double{at.y()}, 1) + ", " +
+                                  fixed(double{at.z()}, 1));
     if (card.body.isStatic || card.body.isAsleep) {
-        ImGui::TextUnformatted(card.body.isStatic ? "never moves" : "asleep");
+        ImGui::TextUnformatted(card.body.isStatic ? "static" : "asleep");
     }
     ImGui::End();
 }
@@ -240,7 +241,7 @@ void showRadar(const Session& session) {
         const float share = static_cast<float>(counts[cell]) / static_cast<float>(most);
         list.AddRectFilled({x, y}, {x + side, y + side}, packed(sequentialColour(share)));
     }
-    numberRow("most in a cell", withThousands(most));
+    numberRow("most bodies in a cell", withThousands(most));
     ImGui::End();
 }
 
@@ -284,7 +285,7 @@ void showHelp(const Session& session, float left) {
         {(left + static_cast<float>(session.width)) / 2, static_cast<float>(session.height) / 2},
         {0.5F, 0.5F});
     ImGui::TextUnformatted(
-        "click: who is that    drag: select    right button: turn    wheel: nearer");
+        "click: pick a body    drag: select bodies    right button: turn    wheel: zoom");
     ImGui::Separator();
     ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingFixedFit);
     for (const KeyBinding& binding : keyBindings()) {
@@ -296,7 +297,7 @@ void showHelp(const Session& session, float left) {
     }
     ImGui::EndTable();
     ImGui::Separator();
-    ImGui::TextUnformatted("Each is a command that a script can run: hashphase wander --list");
+    ImGui::TextUnformatted("Scripts run the same commands: hashphase wander --list");
     ImGui::End();
 }
 

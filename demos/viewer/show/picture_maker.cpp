@@ -25,7 +25,7 @@ Legend rampOf(std::string title, double most, int digits, bool isOpen = false) {
     for (int i = 0; i <= kSteps; ++i) {
         const std::string number = fixed(most * i / kSteps, digits);
         legend.entries.push_back({sequentialColour(static_cast<float>(i) / kSteps),
-                                  i == kSteps && isOpen ? number + " and more" : number});
+                                  i == kSteps && isOpen ? number + " or more" : number});
     }
     return legend;
 }
@@ -145,13 +145,12 @@ std::vector<Legend> BodyColours::legends(const Session& session) const {
         legends.push_back(rampOf("speed [m/s]", fastest_, 1));
     }
     if (tells(Colouring::pairs)) {
-        legends.push_back(rampOf("pairs of a body", kManyPairs, 0, true));
+        legends.push_back(rampOf("pairs per body", kManyPairs, 0, true));
     }
     if (tells(Colouring::rest)) {
-        legends.push_back({"who rests",
-                           {{palette_.fixed, "never moves"},
-                            {palette_.calm, "asleep"},
-                            {palette_.awake, "awake"}}});
+        legends.push_back(
+            {"motion",
+             {{palette_.fixed, "static"}, {palette_.calm, "asleep"}, {palette_.awake, "awake"}}});
     }
     return legends;
 }

@@ -54,44 +54,44 @@ void declareWander(CLI::App& app, WanderOptions& options) {
                       "instead of a scene: a scene file (.json), or a recording of boxes (.aabbs)")
             ->excludes(scene);
     CLI::Option* objects = app.add_option("--objects", options.scene.objects,
-                                          "number of bodies (default: the scene's)");
+                                          "number of bodies (default: as the scene has)");
     objects->transform(wholeFrom(1, kMostObjects));
-    CLI::Option* seed =
-        app.add_option("--seed", options.seed, "seed of the scene (default: 1, or a scene file's)");
+    CLI::Option* seed = app.add_option("--seed", options.seed,
+                                       "seed of the scene (default: 1, or as a scene file says)");
     seed->transform(seedUpTo(kMostSeed));
     CLI::Option* commands =
-        app.add_option("--do", options.commands, "run a command at the start; may be given again");
+        app.add_option("--do", options.commands, "run this command at the start; can be repeated");
     commands->allow_extra_args(false);
-    CLI::Option* script =
-        addFileToRead(app, "--script", options.scriptFile, "then run the commands of this file");
+    CLI::Option* script = addFileToRead(app, "--script", options.scriptFile,
+                                        "run the commands of this file after --do");
     CLI::Option* replay = addFileToRead(
         app, "--replay", options.replayFile,
-        "play back a recording, and compare what comes out; a window pauses it (P), steps "
-        "(O) and begins it again (R), but takes no command that would change it");
+        "replay a recording and compare the results; in a window, pause (P), step (O) and "
+        "restart (R) work, but no command that would change it");
     for (CLI::Option* other : {script, scene, file, objects, seed, commands}) {
         replay->excludes(other);
     }
     app.add_option("--frames", options.frames,
-                   "so many frames (default: until the window is closed; 300 without a window, or "
-                   "fewer where a command pauses it)")
+                   "number of frames (default: until the window is closed; 300 with --headless, or "
+                   "fewer if a command pauses the scene)")
         ->transform(wholeFrom(1, 1'000'000'000))
         ->excludes(script)
         ->excludes(replay);
     app.add_option("--time-limit", options.timeLimit,
-                   "stop after so many seconds; a script or a replay that this cuts off has failed")
+                   "stop after this many seconds; a script or replay that is cut off has failed")
         ->transform(positiveSeconds());
     app.add_option("--threads", options.threads,
-                   "simulate on so many threads at most (default: all; Bullet's scenes on one)")
+                   "most threads for the simulation (default: all; Bullet's scenes use one)")
         ->transform(wholeFrom(1, 1024));
-    app.add_option("--size", options.size, "of the picture in pixels, up to 8,192 each way")
+    app.add_option("--size", options.size,
+                   "width and height of the picture [pixels], up to 8192x8192")
         ->capture_default_str();
-    app.add_flag("--headless", options.isHeadless,
-                 "without a window: pictures by screenshots only");
+    app.add_flag("--headless", options.isHeadless, "run without a window; screenshots still work");
     addFileToWrite(app, "--record", options.recordFile, "write a recording at the end");
     addFileToWrite(app, "--screenshot", options.screenshotFile, "write a picture at the end (PNG)");
-    addFileToWrite(app, "--json", options.jsonFile, "write all numbers at the end to this file");
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
-    app.add_flag("--list", options.list, "say which scenes, commands, keys and readings there are");
+    addFileToWrite(app, "--json", options.jsonFile, "write all numbers to this file at the end");
+    app.add_flag("--quiet", options.quiet, "show no progress on stderr");
+    app.add_flag("--list", options.list, "list scenes, keys, commands and readings");
 }
 
 // --- A run ---------------------------------------------------------------------------------------
@@ -105,7 +105,7 @@ std::pair<int, int> parseSize(const std::string& text) {
                         std::from_chars(first.ptr + 1, end, height).ptr == end;
     if (!isPair || std::min(width, height) < kLeastSide || std::max(width, height) > kMostSide) {
         throw InputError(
-            "--size is a width and a height of 16 to 8,192 pixels, as in 1280x800, not '" + text +
+            "--size is a width and a height of 16 to 8,192 pixels, like 1280x800, not '" + text +
             "'.");
     }
     return {width, height};
@@ -260,9 +260,9 @@ void Run::playHeadless() {
     }
     progress.clear();
     if (!script && !session->isOver && standsStill() && session->frame < frameCount()) {
-        console.err << "hashphase: the scene stands still after " << withThousands(session->frame)
-                    << " of " << withThousands(frameCount())
-                    << " frames, because a command has paused it.\n";
+        console.err << "hashphase: a command paused the scene after "
+                    << withThousands(session->frame) << " of " << withThousands(frameCount())
+                    << " frames.\n";
     }
     if (!options.screenshotFile.empty()) {
         session->askForScreenshot(options.screenshotFile);
@@ -290,7 +290,7 @@ int Run::end() {
     }
     if (framesPerSecond) {
         console.out << fixed(*framesPerSecond, 1)
-                    << " frames shown per second, the first second left out\n";
+                    << " frames shown per second, without the first second\n";
     }
     if (const std::string faults = writeFiles(); !faults.empty()) {
         throw InputError(faults);

@@ -49,7 +49,7 @@ void listWander(std::ostream& out) {
         out << "  " << std::left << std::setw(8) << binding.key << std::setw(18) << binding.command
             << binding.help << '\n';
     }
-    out << "\ncommands of scripts, one a line\n";
+    out << "\ncommands for scripts, one per line\n";
     for (const CommandKind& kind : commandKinds()) {
         out << "  " << std::left << std::setw(54) << kind.usage << kind.help << '\n';
     }
@@ -67,14 +67,13 @@ void tellPhases(const Session& session, bool drewPictures, std::ostream& out) {
             tellPhase(line, before != nullptr, out);
         }
         out << "medians of the last " << (count == 1 ? "frame" : withThousands(count) + " frames")
-            << (drewPictures ? ", of a run that drew pictures as well" : "") << '\n';
+            << (drewPictures ? ", while pictures were drawn" : "") << '\n';
         if (before != nullptr) {
             out << swapText(session) << '\n';
         }
     }
-    out << withThousands(session.stage->size()) << " bodies, "
-        << withThousands(session.visibleCount()) << " visible, "
-        << withThousands(session.stage->pairCount()) << " pairs after "
+    out << bodiesText(session.stage->size()) << ", " << withThousands(session.visibleCount())
+        << " visible, " << withThousands(session.stage->pairCount()) << " pairs after "
         << withThousands(session.frame) << " frames\n";
 }
 

@@ -116,7 +116,7 @@ void BulletStage::takeTimes(double wholeMs) {
         clock_.add(phase, milliseconds);
         known += milliseconds;
     }
-    clock_.add("rest of the step", std::max(0.0, wholeMs - known));
+    clock_.add("other", std::max(0.0, wholeMs - known));
 }
 
 // Of these the broadphase has found the pairs.
@@ -135,7 +135,7 @@ void BulletStage::noteGivenBoxes() {
 void BulletStage::fileWhereBodiesAre() {
     if (second_ == nullptr) {
         world_->world.updateAabbs();
-        clock_.end("boxes anew");
+        clock_.end("update boxes");
         return;
     }
     for (std::uint32_t index = 0; index < second_->proxies.size(); ++index) {
@@ -144,7 +144,7 @@ void BulletStage::fileWhereBodiesAre() {
         }
     }
     second_->grid.update();
-    clock_.end("second index");
+    clock_.end("viewer's grid");
 }
 
 // Marks spheres that have moved by more than their radius and have a static box between where they were and

@@ -197,8 +197,7 @@ void PaperStage::addGroundAndZones(bool hadGround, bool hadZones) {
 
 std::string PaperStage::faultOf(const SceneEffects& effects) const {
     if (effects.sweep && rival_ != nullptr) {
-        return "Only the grid finds whom a sweep passes: choose the broadphase hash to declare "
-               "sweep.";
+        return "The effect sweep needs the broadphase hash: run \"broadphase hash\" first.";
     }
     return simulationError(effects);
 }
@@ -206,8 +205,7 @@ std::string PaperStage::faultOf(const SceneEffects& effects) const {
 void PaperStage::useBroadphase(const BroadphaseKind& kind) {
     if (effects().sweep && !kind.ours) {
         throw std::invalid_argument(
-            "Only the grid finds whom a sweep passes: take back sweep to "
-            "choose another broadphase.");
+            "The effect sweep needs the broadphase hash: run \"effect sweep off\" first.");
     }
     // Bodies may bounce up, and axis sweeps must know how far.
     const Aabb<float> room = withRoom(bounds(), Vector3<float>::Constant(100));

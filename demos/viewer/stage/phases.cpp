@@ -62,7 +62,7 @@ std::vector<PhaseLine> phaseLines(const PhaseHistory& history, const PhaseHistor
             line.before = before->median(row);
         }
     }
-    PhaseLine& together = lines.emplace_back(PhaseLine{.name = "together"});
+    PhaseLine& together = lines.emplace_back(PhaseLine{.name = "total"});
     if (history.toldCount() > 0) {
         together.median = history.medianTotal();
         together.p95 = history.p95Total();

@@ -117,7 +117,7 @@ struct PhaseLine {
 };
 
 /// The rows of a history, in their order; then phases that only the other one has, where it is not null; then
-/// "together".
+/// "total".
 [[nodiscard]] std::vector<PhaseLine> phaseLines(const PhaseHistory& history,
                                                 const PhaseHistory* before);
 

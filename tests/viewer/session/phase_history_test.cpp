@@ -113,7 +113,7 @@ TEST(PhaseLines, HaveTheTimesOfBothHistoriesByPhase) {
     EXPECT_EQ(alone[1].name, "culling");
     EXPECT_EQ(alone[1].median, 2);
     EXPECT_EQ(alone[1].before, std::nullopt);
-    EXPECT_EQ(alone[2].name, "together");
+    EXPECT_EQ(alone[2].name, "total");
     EXPECT_EQ(alone[2].worst, 3);
     const std::vector<PhaseLine> both = phaseLines(now, &former);
     ASSERT_EQ(both.size(), 4U);

@@ -63,7 +63,7 @@ TEST(Playback, SaysWhereItIsNotTheSame) {
     step(session, 60);
     const CommandLog log = replaced(session.log, "push 3 0 0", "push 3 0 1");
     EXPECT_EQ(verdictOf(Playback(log), playBack(log)),
-              Verdict("replay: not the same after frame 60 of 130", false));
+              Verdict("replay: differs after frame 60 of 130", false));
 }
 
 TEST(Playback, SaysWhereAgentsHaveOtherColours) {
@@ -74,7 +74,7 @@ TEST(Playback, SaysWhereAgentsHaveOtherColours) {
     const Session again = playBack(log);
     EXPECT_EQ(again.stage->placesHash(), session.stage->placesHash());
     EXPECT_EQ(verdictOf(Playback(log), again),
-              Verdict("replay: not the same after frame 0 of 60", false));
+              Verdict("replay: differs after frame 0 of 60", false));
 }
 
 TEST(Playback, ComesToTheSameHashWhoeverFindsThePairs) {
@@ -188,9 +188,10 @@ TEST(Playback, RefusesWhatWouldMakeItAnotherRecording) {
           "print frame", "screenshot", "save", "capture a 5", "quit", "", "# nothing"}) {
         EXPECT_NO_THROW(Playback::refuseChange(line)) << line;
     }
-    EXPECT_EQ(messageOf<InputError>([] { Playback::refuseChange("delete"); }),
-              "A recording is being replayed: 'delete' would make it another one. Pause (P), step "
-              "(O) or begin again (R).");
+    EXPECT_EQ(
+        messageOf<InputError>([] { Playback::refuseChange("delete"); }),
+        "'delete' would change the recording that is replayed. Pause (P), step (O) or restart "
+        "(R).");
 }
 
 TEST(Playback, SaysHowFarItHasCome) {
@@ -209,8 +210,7 @@ TEST(Playback, SaysBeforeItsEndWhereItIsNotTheSame) {
     Playback playback(log);
     Session session({.name = "wander", .file = {}, .objects = 100, .seed = 6}, 800, 600);
     turn(session, playback, 70);
-    EXPECT_EQ(verdictOf(playback, session),
-              Verdict("replay: not the same after frame 0 of 130", false));
+    EXPECT_EQ(verdictOf(playback, session), Verdict("replay: differs after frame 0 of 130", false));
 }
 
 std::string faultOf(const std::string& text) {
@@ -232,8 +232,8 @@ TEST(CommandLog, RefusesWhatNoSessionHasRecorded) {
     };
     std::vector<Case> cases{
         {"\"version\": 2", "\"version\": 1",
-         "it is of version 1, and this program plays back 2 alone, with which agents' colours are "
-         "compared as well: record it anew."},
+         "it is of version 1, and this program replays version 2, which also compares agents' "
+         "colours: record it again."},
         {"\"objects\": 10", "\"objects\": -5",
          "'objects' is a whole number from 0 to 1000000, not -5."},
         {"\"seed\": 5", "\"seed\": 1099511627776",
@@ -245,7 +245,7 @@ TEST(CommandLog, RefusesWhatNoSessionHasRecorded) {
     for (const std::string line :  // that write files, or are the onlooker's
          {"save elsewhere.json", "capture elsewhere.aabbs 5", "screenshot elsewhere.png", "quit"}) {
         cases.push_back({"\"command\": \"size 1280 800\"", "\"command\": \"" + line + "\"",
-                         "'" + line + "' is no command of a recording."});
+                         "'" + line + "' is not a command of a recording."});
     }
     for (const auto& [what, by, fault] : cases) {
         EXPECT_EQ(faultWhereReplaced(what, by), "file cannot be read as a recording: " + fault);

@@ -50,7 +50,7 @@ TEST(Badges, SayWhetherPairsAreRightAboveWhatElseTheySay) {
     const std::vector<Badge> all = badges(session);
     ASSERT_EQ(all.size(), 2U);
     EXPECT_EQ(all[0].text, "all " + std::to_string(session.pairCheck.exact.size()) +
-                               " pairs found, and no other");
+                               " pairs found, no false ones");
     EXPECT_EQ(all[1].text, "frustum frozen (F)");
     const std::vector<Badge> waiting = badges(after({"check on"}));
     ASSERT_EQ(waiting.size(), 1U);

@@ -88,8 +88,8 @@ TEST(BodyColours, TellTheGroundsLoadsBesideWhatBodiesTell) {
     const Coloured scene({"colour pairs", "overlay heat on", "step 3"});
     ASSERT_EQ(scene.legends.size(), 2U);
     EXPECT_EQ(scene.legends[0].title, "bodies in a column of cells");
-    EXPECT_EQ(scene.legends[1].title, "pairs of a body");
-    EXPECT_EQ(lastOf(scene.legends[1]).meaning, "8 and more");
+    EXPECT_EQ(scene.legends[1].title, "pairs per body");
+    EXPECT_EQ(lastOf(scene.legends[1]).meaning, "8 or more");
 }
 
 TEST(BodyColours, TellWhoNeverMoves) {

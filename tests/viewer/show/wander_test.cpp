@@ -86,7 +86,7 @@ TEST_F(Wander, TellsThePhasesOfAFrame) {
     const Outcome told = run("--objects 300 --frames 20");
     EXPECT_EQ(told.code, kExitOk) << told.err;
     for (const char* word :
-         {"stand", "pair", "culling", "together", "p95", "worst", "300 bodies", "20 frames"}) {
+         {"stand", "pair", "culling", "total", "p95", "worst", "300 bodies", "20 frames"}) {
         expectIn(told.out, word);
     }
 }
@@ -140,7 +140,7 @@ TEST_F(Wander, FailsWhereAScriptExpectsWhatIsNotSo) {
     EXPECT_EQ(play("step 3\nexpect frame = 3\n").code, kExitOk);
     const Outcome failed = play("step 3\nexpect frame = 4\n");
     EXPECT_EQ(failed.code, kExitCheckFailed);
-    EXPECT_EQ(failed.out, "frame 3: frame is 3, but was to be = 4\n");
+    EXPECT_EQ(failed.out, "frame 3: frame is 3, expected = 4\n");
     const Outcome refused = play("step 3\nexpct frame = 4\n");
     EXPECT_EQ(refused.code, kExitUsage);
     expectIn(refused.err, "script:2: There is no command 'expct'");
@@ -152,9 +152,7 @@ TEST_F(Wander, EndsWhereACommandHasPausedIt) {
     };
     const Outcome paused = after("pause");
     EXPECT_EQ(paused.code, kExitOk);
-    EXPECT_EQ(paused.err,
-              "hashphase: the scene stands still after 0 of 100 frames, because a command has "
-              "paused it.\n");
+    EXPECT_EQ(paused.err, "hashphase: a command paused the scene after 0 of 100 frames.\n");
     const Outcome stepped = after("step 5");
     expectIn(stepped.err, "after 5 of 100 frames");
     expectIn(stepped.out, "pairs after 5 frames");
@@ -325,7 +323,7 @@ TEST_F(Wander, NamesEachFileThatCannotBeWrittenAndWritesTheOthers) {
 
 TEST_F(Wander, SaysWhatIsWrong) {
     EXPECT_EQ(faultOf("--size 10x10"),
-              "hashphase: --size is a width and a height of 16 to 8,192 pixels, as in 1280x800, "
+              "hashphase: --size is a width and a height of 16 to 8,192 pixels, like 1280x800, "
               "not '10x10'.\n");
     expectIn(faultOf("--size 8193x100 --frames 1"), "of 16 to 8,192 pixels");
     expectIn(faultOf("", {"--do", "size 100 8193"}), "from 16 to 8192, not '8193'");
@@ -335,7 +333,7 @@ TEST_F(Wander, SaysWhatIsWrong) {
               "(.aabbs).\n");
     for (const char* nothing : {" \r\n", "# a comment\n"}) {
         EXPECT_EQ(faultOf("--script " + file("nothing", nothing)),
-                  "hashphase: " + file("nothing") + " holds no command.\n");
+                  "hashphase: " + file("nothing") + " contains no command.\n");
     }
     expectIn(faultOf("--objects 2e6"), "from 1 to 1,000,000");
     expectIn(faultOf("", {"--do", ""}), "--do: the value is empty");
