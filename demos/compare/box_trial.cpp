@@ -11,7 +11,8 @@ namespace {
 class BoxTrial final : public Trial {
 public:
     BoxTrial(std::unique_ptr<BoxScene> scene, ReferenceMethod reference)
-        : Trial({scene->boxes().size(), scene->bounds(), true, scene->frameLimit()}),
+        : Trial(
+              {scene->boxes().size(), scene->bounds(), true, scene->frameLimit(), scene->ground()}),
           scene_(std::move(scene)),
           reference_(reference) {
         toBulletBoxes(scene_->boxes(), boxes_);

@@ -136,6 +136,7 @@ std::optional<ReplayRecording> replayFor(const CompareOptions& options, const Op
     ReplaySettings settings;
     settings.scene = opened.name;
     settings.bounds = opened.trial->facts.bounds;
+    settings.ground = opened.trial->facts.ground;
     for (const Contestant& each : contestants) {
         if (!each.leftOutAfter) {
             settings.broadphases.emplace_back(each.kind->name);

@@ -10,6 +10,7 @@
 #include <demos/compare/profile_zones.hpp>
 #include <demos/compare/reference_pairs.hpp>
 #include <demos/scenes/file_bytes.hpp>
+#include <demos/scenes/terrain.hpp>
 #include <demos/scenes/world_contents.hpp>
 
 #include <algorithm>
@@ -46,6 +47,7 @@ struct TrialFacts {
     Aabb<float> bounds;                            // where they are; what leaves it is rare
     bool sharesBoxes = true;                       // all broadphases see the same boxes in a frame
     std::optional<int> frameLimit = std::nullopt;  // how many frames there are
+    GroundHeight ground = {};                      // under the objects, within the bounds
 };
 
 class Trial {

@@ -2,8 +2,8 @@
 //
 // Replays a recording in a canvas, once its tab is shown. What is shown is told by data attributes of
 // the replay's element, too: state (ready; lost while the browser has taken WebGL2 back), playing, frame,
-// frames, pairs (that overlap), lines (that are drawn of them), colouring, broadphase, missing, extra, drawn (of the wrong pairs), marks (where in the picture
-// the first of them is drawn, from its lower left), draws.
+// frames, pairs (that overlap), lines (that are drawn of them), ground (drawn; hidden; none if the scene has none), colouring,
+// broadphase, missing, extra, drawn (of the wrong pairs), marks (where in the picture the first of them is drawn, from its lower left), draws.
 
 class Replay {
     constructor(root, contents, gl, recording) {
@@ -29,6 +29,7 @@ class Replay {
             heights: [heights.low, Math.max(heights.high, heights.low + 1e-3)],
             groundEdge: Math.max(radius, 10 * recording.typicalEdge),
             spheres: recording.spheres,
+            ground: Boolean(recording.ground),
             pairs: false,
             dimming: 0,
             screen: "light",
@@ -48,13 +49,16 @@ class Replay {
 
     // With what depends on the recording.
     fillControls() {
-        const { broadphases, frames, spheres } = this.recording;
+        const { broadphases, frames, spheres, ground } = this.recording;
         this.control("frame").max = frames - 1;
         this.control("broadphase").append(...broadphases.map(({ name }) => new Option(name)));
         this.control("broadphase").value = this.broadphase.name;
         this.control("cellSize").value = Number(this.look.cellSize.toPrecision(4));
         if (!spheres) {
             this.control("shape").parentElement.remove();
+        }
+        if (!ground) {
+            this.control("ground").parentElement.remove();
         }
     }
 
@@ -88,6 +92,7 @@ class Replay {
             speed: (framesASecond) => (this.framesASecond = Number(framesASecond)),
             broadphase: (name) => this.judge(name),
             dim: (isOn) => this.change({ dimming: isOn ? 0.8 : 0 }),
+            ground: (isOn) => this.change({ ground: isOn }),
             pairs: (isOn) => this.change({ pairs: isOn }),
             colouring: (colouring) => this.change({ colouring }),
             cellSize: (size) => Number(size) > 0 && this.change({ cellSize: Number(size) }),
@@ -125,6 +130,7 @@ class Replay {
             Home: () => this.show(0),
             End: () => this.show(this.recording.frames - 1),
             w: () => this.showFirst(),
+            t: () => this.control("ground")?.click(),
             p: () => this.control("pairs").click(),
             d: () => this.control("dim").click(),
             c: () => this.chooseColouring(1 + COLOURINGS.indexOf(this.look.colouring)),
@@ -281,6 +287,7 @@ class Replay {
         );
         Object.assign(this.root.dataset, {
             colouring: look.colouring,
+            ground: look.ground ? "drawn" : recording.ground ? "hidden" : "none",
             lines: look.pairs ? this.drawing.allLines.count : 0,
             marks: JSON.stringify(marks),
             draws: ++this.draws,

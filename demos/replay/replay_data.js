@@ -157,6 +157,9 @@ class Recording {
             broadphase.begins = beginsOfFrames(broadphase);
             broadphase.wrong = sumOf(broadphase.missing) + sumOf(broadphase.extra);
         }
+        if (this.ground) {
+            this.ground.steps = bytesOfBase64(this.ground.heights);
+        }
     }
 
     // The one that misses most; of those that miss as many, the one that lists most in excess.

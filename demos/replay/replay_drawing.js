@@ -14,8 +14,12 @@ const EXTRA_COLOUR = "#ff8c00";
 const COLOURINGS = ["cell", "height", "overlaps"];
 
 const SCREENS = {
-    light: { top: "#b9d3ea", bottom: "#f6f3ec", dim: "#c9ced4", halo: "#ffffff", pair: "#1d2733" },
-    dark: { top: "#0d1420", bottom: "#2b3442", dim: "#4a525d", halo: "#000000", pair: "#f2f5f8" },
+    light: {
+        top: "#b9d3ea", bottom: "#f6f3ec", dim: "#c9ced4", halo: "#ffffff", pair: "#1d2733", ground: "#d6cfb8",
+    },
+    dark: {
+        top: "#0d1420", bottom: "#2b3442", dim: "#4a525d", halo: "#000000", pair: "#f2f5f8", ground: "#4d5545",
+    },
 };
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
@@ -68,18 +72,24 @@ class Program {
     }
 }
 
+// A bound one, of texels that shaders fetch.
+function makeTexture(gl) {
+    const texture = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+        gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    }
+    return texture;
+}
+
 // Items of eight numbers each that vertex shaders fetch, in two texels. (Instances of six vertices each take
 // 2.5 times as long where there is no GPU.)
 class Items {
     constructor(gl, Numbers, inner, format, type) {
         Object.assign(this, { gl, Numbers, inner, format, type });
         this.count = 0;
-        this.texture = gl.createTexture();
+        this.texture = makeTexture(gl);
         this.nothing = gl.createVertexArray(); // all comes from the texels
-        gl.bindTexture(gl.TEXTURE_2D, this.texture);
-        for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
-            gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
-        }
     }
 
     // `fill(texels, at, i)` sets the numbers of the i-th, from `at` on.
@@ -103,6 +113,30 @@ class Items {
     }
 }
 
+// The ground: squares of a lattice, two triangles each, seen from above. From below it hides nothing.
+class Ground {
+    constructor(gl, { columns, rows, lowest, highest, steps }, { low, extent }) {
+        this.gl = gl;
+        this.vertices = 6 * (columns - 1) * (rows - 1);
+        this.place = { extent, heightRange: [lowest - low[1], highest - low[1]] };
+        this.program = new Program(gl, LIGHT_GLSL, GROUND_GLSL);
+        this.nothing = gl.createVertexArray();
+        this.texture = makeTexture(gl);
+        gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, columns, rows, 0, gl.RED, gl.UNSIGNED_BYTE, steps);
+    }
+
+    draw({ both }, groundColour) {
+        const { gl } = this;
+        this.program.use({ both, ...this.place, groundColour });
+        gl.bindVertexArray(this.nothing);
+        gl.bindTexture(gl.TEXTURE_2D, this.texture);
+        gl.enable(gl.CULL_FACE);
+        gl.drawArrays(gl.TRIANGLES, 0, this.vertices);
+        gl.disable(gl.CULL_FACE);
+    }
+}
+
 class Drawing {
     // `gl` is the canvas's context.
     constructor(gl, recording) {
@@ -110,9 +144,10 @@ class Drawing {
         this.recording = recording;
         this.background = new Program(gl, BACKGROUND_GLSL);
         this.bodies = [
-            new Program(gl, OBJECTS_GLSL, BOXES_GLSL),
-            new Program(gl, OBJECTS_GLSL, SPHERES_GLSL),
+            new Program(gl, LIGHT_GLSL, OBJECTS_GLSL, BOXES_GLSL),
+            new Program(gl, LIGHT_GLSL, OBJECTS_GLSL, SPHERES_GLSL),
         ];
+        this.ground = recording.ground && new Ground(gl, recording.ground, recording);
         this.pairs = new Program(gl, PAIRS_GLSL);
         const objects = () =>
             new Items(gl, Uint16Array, gl.RGBA16UI, gl.RGBA_INTEGER, gl.UNSIGNED_SHORT);
@@ -173,7 +208,7 @@ class Drawing {
         });
     }
 
-    // `look`: camera, colouring, cellSize, heights, groundEdge, spheres, pairs, dimming, screen, pixels.
+    // `look`: camera, colouring, cellSize, heights, groundEdge, spheres, ground, pairs, dimming, screen, pixels.
     // Returns the camera's matrices.
     draw(look) {
         const { gl } = this;
@@ -187,6 +222,9 @@ class Drawing {
         gl.bindVertexArray(this.nothing);
         gl.drawArrays(gl.TRIANGLES, 0, 3);
         gl.depthMask(true);
+        if (look.ground) {
+            this.ground.draw(matrices, rgb(screen.ground));
+        }
         this.drawBodies(look, screen, matrices);
         this.pairs.use({
             both: matrices.both,

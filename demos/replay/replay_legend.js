@@ -19,11 +19,14 @@ const swatch = (colour, text) => {
     return element("span", "", box, ` ${text}`);
 };
 
-function legendOf({ colouring, heights, cellSize }, { low, broadphases }) {
+function legendOf({ colouring, heights, cellSize, ground, screen }, { low, broadphases }) {
     const legend = [
         swatch(MISSING_COLOUR, "missing: overlap, not listed"),
         swatch(EXTRA_COLOUR, "extra: listed, do not overlap"),
     ];
+    if (ground) {
+        legend.push(swatch(SCREENS[screen].ground, "terrain"));
+    }
     if (colouring === "overlaps") {
         const counts = ["overlaps none", "2", "4", "6", "8 or more others"];
         return [...legend, ...counts.map((count, i) => swatch(OVERLAP_COLOURS[i], count))];

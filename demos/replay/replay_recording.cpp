@@ -135,6 +135,7 @@ void ReplayRecording::begin(std::span<const Aabb<float>> boxes) {
     for (std::size_t place = 0; place < objects.size(); ++place) {
         placeOf_[objects[place]] = static_cast<std::uint32_t>(place);
     }
+    ground_ = sampleGround(settings_.ground, selection_.bounds);
     tracks_.assign(settings_.sharesBoxes ? 1 : wrong_.size(),
                    ReplayTrack(selection_.bounds, objects, settings_.pairs));
 }
@@ -183,7 +184,7 @@ void ReplayRecording::describeFirst(const ReplayFrame& frame, WrongPairs& wrong)
 }
 
 std::size_t ReplayRecording::bytes() const {
-    std::size_t raw = 0;
+    std::size_t raw = ground_.heights.size();
     for (const ReplayTrack& track : tracks_) {
         raw += track.boxStream.size() + track.pairStream.size();
     }
@@ -209,6 +210,7 @@ Json ReplayRecording::json() const {
               {"low", threeNumbers(selection_.bounds.min())},
               {"high", threeNumbers(selection_.bounds.max())},
               {"typicalEdge", selection_.typicalEdge},
+              {"ground", groundJson(ground_)},
               {"tracks", Json::array()},
               {"broadphases", Json::array()}};
     for (const ReplayTrack& track : tracks_) {

@@ -9,6 +9,7 @@
 // Limits  frames, bytes, objects and pairs end where the settings say; the recording tells all that
 //         it leaves out.
 
+#include <demos/replay/replay_ground.hpp>
 #include <demos/replay/replay_track.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/page.hpp>
@@ -27,6 +28,7 @@ namespace hashphase::demos {
 struct ReplaySettings {
     std::string scene;                     // where the objects come from
     Aabb<float> bounds;                    // what leaves them may be cut off there
+    GroundHeight ground;                   // under the objects, within the bounds
     std::vector<std::string> broadphases;  // names
     std::string noun = "objects";          // what the objects are, in the plural
     bool areSpheres = false;               // the boxes hold spheres
@@ -106,6 +108,7 @@ private:
     std::size_t frames_ = 0;
     bool isFull_ = false;
     ReplaySelection selection_;
+    ReplayGround ground_;
     std::vector<std::uint32_t> placeOf_;  // among the recorded objects, of each object
     std::vector<ReplayTrack> tracks_;     // one, or one a broadphase
     std::vector<WrongPairs> wrong_;       // of each broadphase

@@ -50,6 +50,10 @@ std::string whatIsRecorded(const Json& recording, const ReplaySettings& settings
         text += thousands(recording["objectsCut"]) + " of the " + settings.noun +
                 " reach beyond the drawn world, or hold a NaN: they are cut off at its end. ";
     }
+    if (const Json& ground = recording["ground"]; !ground.is_null()) {
+        text += "The terrain is drawn from " + thousands(ground["columns"]) + " x " +
+                thousands(ground["rows"]) + " heights. ";
+    }
     return text +
            "Which pairs are wrong was told from the boxes as they are; they are drawn rounded to "
            "a 65,535th of the drawn world. For more frames, in a larger page: --replay-frames.";

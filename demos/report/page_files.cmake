@@ -40,9 +40,9 @@ configure_file(report/page_files.cpp.in page_files.cpp @ONLY)
 
 hashphase_bundle_script(
     replayScript replay/replay_data.js replay/replay_camera.js replay/shaders/background.glsl
-    replay/shaders/objects.glsl replay/shaders/boxes.glsl replay/shaders/spheres.glsl
-    replay/shaders/pairs.glsl replay/replay_drawing.js replay/replay_legend.js replay/replay.html
-    replay/replay.js)
+    replay/shaders/light.glsl replay/shaders/ground.glsl replay/shaders/objects.glsl
+    replay/shaders/boxes.glsl replay/shaders/spheres.glsl replay/shaders/pairs.glsl
+    replay/replay_drawing.js replay/replay_legend.js replay/replay.html replay/replay.js)
 hashphase_bundle_style(replayStyle replay/replay.css)
 configure_file(replay/replay_files.cpp.in replay_files.cpp @ONLY)
 set(HASHPHASE_PAGE_FILES ${CMAKE_CURRENT_BINARY_DIR}/page_files.cpp

@@ -7,6 +7,8 @@
 // Repeatable  The boxes of frame n depend on the scene's arguments, its seed and n alone.
 // Units       metres, seconds.
 
+#include <demos/scenes/terrain.hpp>
+
 #include <broadphase/aabb.hpp>
 
 #include <cstddef>
@@ -56,6 +58,9 @@ public:
 
     /// A box that no box of any frame leaves.
     [[nodiscard]] virtual Aabb<float> bounds() const = 0;
+
+    /// The ground under the objects, within the bounds; empty for a scene without ground. May outlive the scene.
+    [[nodiscard]] virtual GroundHeight ground() const { return {}; }
 
     /// How many frames there are, where that is limited.
     [[nodiscard]] virtual std::optional<int> frameLimit() const { return std::nullopt; }

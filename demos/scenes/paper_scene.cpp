@@ -44,6 +44,10 @@ Aabb<float> PaperScene::bounds() const {
     return {Vector3<float>(0, 0, 0), Vector3<float>(side_, Terrain::kHighest + 2 * kRadius, side_)};
 }
 
+GroundHeight PaperScene::ground() const {
+    return [terrain = terrain_](float x, float z) { return terrain.height(x, z); };
+}
+
 void PaperScene::walk(Walker& walker) {
     const float farBorder = side_ - kRadius;
     walker.heading += random_.between(-kLargestTurn, kLargestTurn);

@@ -19,6 +19,7 @@ public:
 
     void advance() override;
     [[nodiscard]] Aabb<float> bounds() const override;
+    [[nodiscard]] GroundHeight ground() const override;
 
     static constexpr float kSide = 400;  // of the paper's domain, which begins at (0, 0) [m]
     static constexpr float kRadius = 1;  // [m]

@@ -12,6 +12,9 @@
 
 namespace hashphase::demos {
 
+/// Height [m] of a ground at (x, z) [m]; finite. An empty function: no ground.
+using GroundHeight = std::function<float(float x, float z)>;
+
 /// Value noise.
 class Terrain {
 public:

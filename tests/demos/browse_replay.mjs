@@ -92,6 +92,13 @@ const changes = `(async () => {
     changed.lines = Number(lines);
     await choose("pairs", false);
     changed.byPairs = changedSince("pairs");
+    remember("withGround");
+    changed.ground = root.dataset.ground;
+    const { ground } = await choose("ground", false);
+    changed.withoutGround = ground;
+    changed.byGround = changedSince("withGround");
+    await choose("ground", true);
+    changed.backByGround = changedSince("withGround");
     remember("last");
     await scrub(root.dataset.frames - 1);
     changed.byLastFrame = changedSince("last");
@@ -156,6 +163,9 @@ async function checkKeys({ tab, evaluate }, frames) {
     assert.equal((await after("End")).frame, frames - 1);
     assert.equal((await after("Home")).frame, 0);
     assert.equal((await after("c")).colouring, "height");
+    await after("t");
+    assert.equal(await evaluate("root.dataset.ground"), "hidden");
+    await after("t");
     await evaluate("remember('key')");
     await after("ArrowLeft");
     assert((await evaluate("changedSince('key')")) > 100, "it does not turn");
@@ -236,6 +246,9 @@ async function checkChanges({ tab, evaluate }, found) {
     const changed = await evaluate(changes);
     assert(changed.colours > 100, "an empty picture has few");
     assert.equal(changed.backByCell, 0, "the same picture again, to the last bit");
+    assert.deepEqual([changed.ground, changed.withoutGround], ["drawn", "hidden"]);
+    assert.equal(changed.backByGround, 0, "the same picture again, to the last bit");
+    assert(changed.byGround > 20_000, `the ground covers ${changed.byGround} pixels`);
     for (const change of ["byHeight", "byLargerCell", "byPairs", "byLastFrame"]) {
         assert(changed[change] > 100, change);
     }
@@ -271,6 +284,7 @@ const checkAll = (found) => async (page) => {
     await begin(page);
     const legend = await evaluate("root.querySelector('.legend').textContent");
     assert(legend.includes("which is no broadphase's own size"), `none has cells: ${legend}`);
+    assert(legend.includes("terrain"), legend);
     await checkKeysElsewhere(page);
     const loss = await evaluate(lossOfContext);
     assert.deepEqual(loss.during, { state: "lost", playing: "false" });
@@ -305,6 +319,13 @@ const coloursOfRow = `(async () => {
     return colours;
 })()`;
 
+// Of a recording without a ground.
+const level = `({
+    ground: root.dataset.ground,
+    hasGroundBox: root.querySelector("[name=ground]") !== null,
+    isInLegend: root.querySelector(".legend").textContent.includes("terrain"),
+})`;
+
 const checkRow = (bodies) => async (page) => {
     const { tab, evaluate } = page;
     await begin(page);
@@ -317,6 +338,7 @@ const checkRow = (bodies) => async (page) => {
     assert.equal(colours.length, bodies, `one a body: ${colours}`);
     assert(colours.every((colour, i) => i === 0 || colour !== colours[i - 1]), "cells side by side differ");
     assert.equal((await pictureAfter(evaluate, () => press(tab, " "))).frame, 0, "round and round");
+    assert.deepEqual(await evaluate(level), { ground: "none", hasGroundBox: false, isInLegend: false });
 };
 
 const checkHeap = (pairs) => async (page) => {

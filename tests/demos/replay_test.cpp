@@ -186,6 +186,58 @@ TEST(ReplayRecording, KeepsTheBoxesOfEachBroadphaseWhereTheyDiffer) {
     EXPECT_EQ(json["broadphases"][1]["track"], 1);
 }
 
+// --- The ground ----------------------------------------------------------------------------------
+
+/// From 20 to 29 m between x = 0 and 10.
+float heightOfSlope(float x, float /*z*/) {
+    return 20 + 0.9F * x;
+}
+
+TEST(ReplayGround, IsALatticeOfNearlySquareCellsInStepsOfItsHeights) {
+    const Aabb<float> bounds(Vector3<float>(2, 0, 1), Vector3<float>(10, 40, 3));
+    const ReplayGround ground = sampleGround(heightOfSlope, bounds);
+    EXPECT_EQ(ground.columns, 129U);
+    EXPECT_EQ(ground.rows, 33U);
+    EXPECT_FLOAT_EQ(ground.lowest, heightOfSlope(2, 0));
+    EXPECT_FLOAT_EQ(ground.highest, heightOfSlope(10, 0));
+    ASSERT_EQ(ground.heights.size(), 129U * 33U);
+    const float step = (ground.highest - ground.lowest) / 255;
+    for (std::size_t i = 0; i < ground.heights.size(); ++i) {
+        const float x = 2 + 8 * static_cast<float>(i % 129) / 128;
+        const float height = ground.lowest + step * static_cast<float>(ground.heights[i]);
+        EXPECT_NEAR(height, heightOfSlope(x, 0), 0.501F * step) << i;
+    }
+}
+
+TEST(ReplayGround, MayBeLevelAndIsNoneWithoutHeightsOrRoom) {
+    const auto level = [](float /*x*/, float /*z*/) { return 3.0F; };
+    const ReplayGround ground = sampleGround(level, kTenMetres);
+    EXPECT_EQ(ground.lowest, ground.highest);
+    EXPECT_TRUE(std::ranges::all_of(ground.heights, [](auto each) { return each == 0; }));
+    EXPECT_TRUE(groundJson(sampleGround({}, kTenMetres)).is_null());
+    const Aabb<float> line(Vector3<float>::Zero(), Vector3<float>(10, 10, 0));
+    EXPECT_TRUE(groundJson(sampleGround(level, line)).is_null());
+}
+
+TEST(ReplayGround, CoversTheRecordedBoundsAndCountsAmongTheBytes) {
+    const auto frames = driftingFrames(200, 6);
+    ReplaySettings settings = replaySettings();
+    settings.bounds = kTenMetres;
+    settings.bytes = 12'000;
+    EXPECT_TRUE(recorded(settings, frames).json()["ground"].is_null());
+    const std::size_t without = recorded(settings, frames).json()["frames"];
+    settings.ground = heightOfSlope;
+    settings.bytes += 4 * 129 * 129 / 3;
+    const ReplayRecording recording = recorded(settings, frames);
+    const Json json = recording.json();
+    EXPECT_EQ(json["frames"], without);
+    EXPECT_EQ(json["ground"]["heights"].get<std::string>().size(), 22'188U);
+    EXPECT_FLOAT_EQ(json["ground"]["lowest"], heightOfSlope(json["low"][0], 0));
+    EXPECT_FLOAT_EQ(json["ground"]["highest"], heightOfSlope(json["high"][0], 0));
+    EXPECT_TRUE(includes(tabOf(recording), "The terrain is drawn from 129 x 129 heights."));
+    EXPECT_TRUE(recorded(settings, driftingFrames(0, 1)).json()["ground"].is_null());
+}
+
 // --- As pages read it ----------------------------------------------------------------------------
 
 class ReplayRead : public testing::Test {
@@ -272,6 +324,17 @@ TEST_F(ReplayRead, GivesPairsBackAndBoxesToHalfAStep) {
             EXPECT_EQ(numbers[7 * i + 6], overlapCounts[i]);
         }
     }
+}
+
+TEST_F(ReplayRead, GivesTheHeightsOfTheGroundBack) {
+    if (!isThereNode()) {
+        GTEST_SKIP() << kWithoutNode;
+    }
+    ReplaySettings settings = replaySettings();
+    settings.bounds = kTenMetres;
+    settings.ground = heightOfSlope;
+    const Json seen = read(recorded(settings, driftingFrames(50, 1)).json());
+    EXPECT_EQ(seen["steps"], sampleGround(heightOfSlope, kTenMetres).heights);
 }
 
 TEST_F(ReplayRead, HasAFewBytesOfAFrameInWhichNothingMoves) {
@@ -405,8 +468,12 @@ TEST(ReplayTab, IsInPagesOfComparisonsUnlessNotWanted) {
     const std::vector<std::string> brief{"compare", "--objects", "50", "--frames", "12"};
     const std::string page = pageOfCommand(brief, folder);
     EXPECT_TRUE(includes(page, "of paper: the first 12 of 12 frames"));
+    EXPECT_TRUE(includes(page, "\"ground\":{\"columns\":129,\"rows\":129,"));
     EXPECT_TRUE(std::regex_search(page, std::regex("\"name\":\"hash\"[^}]*\"cellSize\":[0-9]")));
     EXPECT_TRUE(includes(page, "\"cellSize\":null")) << "of trees";
+    std::vector<std::string> other = brief;
+    other.insert(other.end(), {"--scene", "uniform"});
+    EXPECT_TRUE(includes(pageOfCommand(other, folder), "\"ground\":null"));
     std::vector<std::string> fewer = brief;
     fewer.insert(fewer.end(), {"--replay-frames", "4"});
     EXPECT_TRUE(includes(pageOfCommand(fewer, folder), "of paper: the first 4 of 12 frames"));

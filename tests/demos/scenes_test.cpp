@@ -104,6 +104,7 @@ TEST(PaperScene, HasSpheresOfRadiusOneThatTouchTheGround) {
         const Vector3<float> centre = box.center();
         EXPECT_NEAR(box.min().y(), terrain.height(centre.x(), centre.z()), 1e-3F);
     }
+    EXPECT_EQ(scene.ground()(30, 50), terrain.height(30, 50));
     EXPECT_EQ(scene.bounds().sizes().x(), 400);
     EXPECT_EQ(scene.bounds().sizes().z(), 400);
 }
