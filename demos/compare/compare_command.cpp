@@ -139,6 +139,9 @@ std::optional<ReplayRecording> replayFor(const CompareOptions& options, const Op
     settings.ground = opened.trial->facts.ground;
     for (const Contestant& each : contestants) {
         if (!each.leftOutAfter) {
+            if (each.kind->ours) {
+                settings.opensOn = settings.broadphases.size();
+            }
             settings.broadphases.emplace_back(each.kind->name);
         }
     }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Zlib
 //
-// Replays a recording in a canvas, once its tab is shown. What is shown is told by data attributes of
-// the replay's element, too: state (ready; lost while the browser has taken WebGL2 back), playing, frame,
-// frames, pairs (that overlap), lines (that are drawn of them), ground (drawn; hidden; none if the scene has none), colouring,
-// broadphase, missing, extra, drawn (of the wrong pairs), marks (where in the picture the first of them is drawn, from its lower left), draws.
+// Replays a recording in a canvas, once its tab is shown: on the broadphase that the recording opens on, and the
+// first frame with a wrong pair of it, or else the first frame.
+//
+// Data attributes of the replay's element hold what is shown, too: state (ready; lost while the browser has stopped
+// WebGL2), playing, frame, frames, pairs (that overlap), lines (pairs drawn as lines), ground (drawn; hidden; none if
+// the scene has no ground), colouring, broadphase, missing, extra, drawn (wrong pairs in the picture), marks (the two
+// ends of the first of them in the picture, from its lower left [px]), draws.
 
 class Replay {
     constructor(root, contents, gl, recording) {
@@ -12,7 +15,7 @@ class Replay {
         this.recording = recording;
         this.frame = 0;
         this.framesASecond = 10;
-        this.broadphase = recording.worst();
+        this.broadphase = recording.broadphases[recording.opensOn];
         this.gl = gl;
         this.canvas = gl.canvas;
         this.drawing = new Drawing(gl, recording);
@@ -43,13 +46,14 @@ class Replay {
         this.followKeys();
         this.followScreen();
         this.followLoss();
-        this.show(0);
+        this.show(this.broadphase.first?.frame ?? 0);
         root.dataset.state = "ready";
     }
 
     // With what depends on the recording.
     fillControls() {
-        const { broadphases, frames, spheres, ground } = this.recording;
+        const { recording } = this;
+        const { broadphases, frames, spheres, ground } = recording;
         this.control("frame").max = frames - 1;
         this.control("broadphase").append(...broadphases.map(({ name }) => new Option(name)));
         this.control("broadphase").value = this.broadphase.name;
@@ -60,6 +64,8 @@ class Replay {
         if (!ground) {
             this.control("ground").parentElement.remove();
         }
+        this.part(".faults").append(...faultsOfAll(recording));
+        this.part("[data-act=showFirst]").hidden = !recording.worst().first;
     }
 
     control(name) {
@@ -210,10 +216,13 @@ class Replay {
         this.show(Math.min(this.recording.frames - 1, Math.max(0, this.frame + by)));
     }
 
+    // Stays in the frame if it shows a wrong pair of that broadphase; else goes to the first frame that does, if any.
     judge(name) {
         this.broadphase = this.recording.broadphases.find((each) => each.name === name);
         this.words.textContent = "";
-        this.show(this.frame);
+        const { first } = this.broadphase;
+        const isSeen = this.recording.wrongPairs(this.broadphase, this.frame).length > 0;
+        this.show(isSeen || !first ? this.frame : first.frame);
     }
 
     show(frame) {
@@ -243,13 +252,17 @@ class Replay {
         const [inAll, here, listed] = [pairsInAll[frame], pairs[frame], pairsListed[frame]];
         const when = (isSo, text) => (isSo ? text : "");
         const drawn = this.wrong.length;
-        this.part("output").textContent = `frame ${frame} of 0 to ${recording.frames - 1}`;
+        this.part("output").textContent = `frame ${frame} (0 to ${recording.frames - 1})`;
+        const verdict =
+            missing + extra === 0
+                ? `${broadphase.name} lists exactly these`
+                : `${broadphase.name}: ${faultsOf(missing, extra)}`;
         this.part(".counts").textContent =
             `${thousands(inAll)} pairs overlap` +
-            when(here < inAll, `, ${thousands(here)} of them between those drawn`) +
-            when(listed < here, ", too many to be drawn") +
-            `; of ${broadphase.name}'s, ${thousands(missing)} are missing and ${thousands(extra)} extra` +
-            when(drawn < missing + extra, ` (${thousands(drawn)} of them drawn)`) +
+            when(here < inAll, `, ${thousands(here)} of them between recorded objects`) +
+            when(listed < here, ", too many to draw") +
+            `. ${verdict}` +
+            when(drawn < missing + extra, ` (${thousands(drawn)} drawn)`) +
             ".";
         const { frames } = recording;
         const { name } = broadphase;
@@ -294,18 +307,24 @@ class Replay {
         });
     }
 
+    // Of the chosen broadphase, or else of the worst.
     showFirst() {
-        const { first, name, wrong } = this.broadphase;
+        const { recording } = this;
+        const shown = this.broadphase.first ? this.broadphase : recording.worst();
+        const { first, name } = shown;
         if (!first) {
-            const others = `The wrong pairs of ${name} are of others than those drawn.`;
-            this.words.textContent = wrong > 0 ? others : `No pair of ${name} is wrong in the recorded frames.`;
+            this.words.textContent = recording.broadphases.some(isWrong)
+                ? "Every wrong pair has an object that is not recorded."
+                : NONE_WRONG;
             return;
         }
+        this.broadphase = shown;
+        this.control("broadphase").value = name;
         this.setPlaying(false);
         this.control("dim").checked = true;
         this.look.dimming = 0.8;
         this.show(first.frame);
-        const [a, b] = first.places.map((place) => this.recording.box(this.numbers, place));
+        const [a, b] = first.places.map((place) => recording.box(this.numbers, place));
         const middle = a.centre.map((each, axis) => (each + b.centre[axis]) / 2);
         const small = Math.min(Math.max(...a.edges), Math.max(...b.edges));
         const apart = Math.hypot(...minus(a.centre, b.centre));

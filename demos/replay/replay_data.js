@@ -155,19 +155,22 @@ class Recording {
         for (const broadphase of this.broadphases) {
             broadphase.places = numbersOfBase64(broadphase.places);
             broadphase.begins = beginsOfFrames(broadphase);
-            broadphase.wrong = sumOf(broadphase.missing) + sumOf(broadphase.extra);
+            broadphase.missingInAll = sumOf(broadphase.missing);
+            broadphase.extraInAll = sumOf(broadphase.extra);
         }
         if (this.ground) {
             this.ground.steps = bytesOfBase64(this.ground.heights);
         }
     }
 
-    // The one that misses most; of those that miss as many, the one that lists most in excess.
+    // The broadphase that misses most pairs; of equals, the one that lists most extra pairs. Those with a wrong
+    // pair between recorded objects come first.
     worst() {
-        const faults = ({ missing, extra }) => [sumOf(missing), sumOf(extra)];
+        const faults = ({ first, missingInAll, extraInAll }) => [first ? 1 : 0, missingInAll, extraInAll];
         return this.broadphases.reduce((worst, each) => {
-            const [[missing, extra], [most, mostExtra]] = [faults(each), faults(worst)];
-            return (missing - most || extra - mostExtra) > 0 ? each : worst;
+            const most = faults(worst);
+            const differences = faults(each).map((count, i) => count - most[i]);
+            return differences.find((difference) => difference !== 0) > 0 ? each : worst;
         });
     }
 

@@ -19,6 +19,27 @@ const swatch = (colour, text) => {
     return element("span", "", box, ` ${text}`);
 };
 
+const isWrong = ({ missingInAll, extraInAll }) => missingInAll + extraInAll > 0;
+const NONE_WRONG = "No broadphase has a wrong pair in the recorded frames.";
+
+// "3 missing, 1,200 extra"; "0".
+function faultsOf(missing, extra) {
+    const counts = Object.entries({ missing, extra }).filter(([, count]) => count > 0);
+    return counts.map(([kind, count]) => `${thousands(count)} ${kind}`).join(", ") || "0";
+}
+
+// Of all broadphases, as texts and elements.
+function faultsOfAll({ broadphases }) {
+    if (!broadphases.some(isWrong)) {
+        return [NONE_WRONG];
+    }
+    const each = broadphases.map(({ name, missingInAll, extraInAll }, i) => {
+        const end = i + 1 < broadphases.length ? "; " : ".";
+        return [element("span", "", `${name} ${faultsOf(missingInAll, extraInAll)}`), end];
+    });
+    return ["Wrong pairs, sum of all recorded frames: ", ...each.flat()];
+}
+
 function legendOf({ colouring, heights, cellSize, ground, screen }, { low, broadphases }) {
     const legend = [
         swatch(MISSING_COLOUR, "missing: overlap, not listed"),

@@ -211,6 +211,7 @@ Json ReplayRecording::json() const {
               {"high", threeNumbers(selection_.bounds.max())},
               {"typicalEdge", selection_.typicalEdge},
               {"ground", groundJson(ground_)},
+              {"opensOn", settings_.opensOn},
               {"tracks", Json::array()},
               {"broadphases", Json::array()}};
     for (const ReplayTrack& track : tracks_) {

@@ -30,6 +30,7 @@ struct ReplaySettings {
     Aabb<float> bounds;                    // what leaves them may be cut off there
     GroundHeight ground;                   // under the objects, within the bounds
     std::vector<std::string> broadphases;  // names
+    std::size_t opensOn = 0;               // the broadphase that a page shows first
     std::string noun = "objects";          // what the objects are, in the plural
     bool areSpheres = false;               // the boxes hold spheres
     bool sharesBoxes = true;               // all broadphases see the same boxes; else each its own

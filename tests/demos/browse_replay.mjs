@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Zlib
 //
-// node browse_replay.mjs <chromium> <found.json> <page> <row> <heap>
+// node browse_replay.mjs <chromium> <found.json> <page> <row> <heap> <wrong>
 //
 // Plays the recordings of pages in headless Chromium, whose WebGL2 is drawn by the processor, and fails where it is
-// not as it is to be. Of the first page, a comparison that found what is in the file: each frame, how the picture
-// changes with what is chosen, keys, the first wrong pair, a loss of WebGL2, other sizes and densities of the screen,
-// and what is said where there is no WebGL2. Of boxes in a row: their colours; of a heap: too many pairs.
+// not as it is to be. Of the first page, a comparison that found what is in the file: what it opens on, each frame,
+// how the picture changes with what is chosen, keys, the first wrong pair, a loss of WebGL2, other sizes and densities
+// of the screen, and the words without WebGL2. Of boxes in a row: their colours, and that no pair is wrong; of a heap:
+// too many pairs; of a wrong broadphase alone: what it opens on.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -258,11 +259,32 @@ async function checkChanges({ tab, evaluate }, found) {
     assert.notEqual(await evaluate("pixels()[0]"), ink, "on a light and a dark screen");
 }
 
+// What it opens on, and the first frame to see of another broadphase.
+async function checkOpening({ evaluate }, { frame }) {
+    const shown = () => evaluate("[root.dataset.broadphase, Number(root.dataset.frame)]");
+    assert.deepEqual(await shown(), ["right", 0], "ours, from the beginning");
+    const counts = () => evaluate("root.querySelector('.counts').textContent");
+    assert.match(await counts(), /right lists exactly these\.$/);
+    const faults = await evaluate("root.querySelector('.faults').textContent");
+    assert.equal(faults, "Wrong pairs, sum of all recorded frames: forgetful 9 missing; right 0.");
+    assert.equal(await evaluate("root.querySelector('[data-act=showFirst]').hidden"), false);
+    await evaluate("choose('broadphase', 'forgetful')");
+    assert.deepEqual(await shown(), ["forgetful", frame], "its first wrong frame");
+    assert.match(await counts(), /forgetful: 1 missing\.$/);
+    await evaluate("choose('broadphase', 'right')");
+    assert.deepEqual(await shown(), ["right", frame], "in the same frame");
+    await evaluate(`scrub(${frame + 2})`);
+    await evaluate("choose('broadphase', 'forgetful')");
+    assert.deepEqual(await shown(), ["forgetful", frame + 2], "which shows a wrong pair, too");
+}
+
 async function checkWrongPair({ tab, evaluate }, { frame, objects: [a, b] }) {
+    await evaluate("choose('broadphase', 'right')");
     await evaluate("scrub(0)");
     await pictureAfter(evaluate, () => press(tab, "w"));
     const seen = await evaluate(wrongPair);
-    assert.equal(seen.broadphase, "forgetful", "the worst");
+    assert.equal(seen.broadphase, "forgetful", "the worst, for ours is right");
+    assert.equal(await evaluate("root.querySelector('[name=broadphase]').value"), "forgetful");
     assert.equal(seen.frame, frame);
     assert(seen.words.includes(`Objects ${a} and ${b} overlap`), seen.words);
     assert(seen.inPicture);
@@ -285,6 +307,7 @@ const checkAll = (found) => async (page) => {
     const legend = await evaluate("root.querySelector('.legend').textContent");
     assert(legend.includes("which is no broadphase's own size"), `none has cells: ${legend}`);
     assert(legend.includes("terrain"), legend);
+    await checkOpening(page, found.firstFault);
     await checkKeysElsewhere(page);
     const loss = await evaluate(lossOfContext);
     assert.deepEqual(loss.during, { state: "lost", playing: "false" });
@@ -319,8 +342,11 @@ const coloursOfRow = `(async () => {
     return colours;
 })()`;
 
-// Of a recording without a ground.
-const level = `({
+// Of a recording without wrong pairs and without a ground.
+const rightAndLevel = `({
+    hasButton: !root.querySelector("[data-act=showFirst]").hidden,
+    faults: root.querySelector(".faults").textContent,
+    words: root.querySelector(".words").textContent,
     ground: root.dataset.ground,
     hasGroundBox: root.querySelector("[name=ground]") !== null,
     isInLegend: root.querySelector(".legend").textContent.includes("terrain"),
@@ -338,7 +364,11 @@ const checkRow = (bodies) => async (page) => {
     assert.equal(colours.length, bodies, `one a body: ${colours}`);
     assert(colours.every((colour, i) => i === 0 || colour !== colours[i - 1]), "cells side by side differ");
     assert.equal((await pictureAfter(evaluate, () => press(tab, " "))).frame, 0, "round and round");
-    assert.deepEqual(await evaluate(level), { ground: "none", hasGroundBox: false, isInLegend: false });
+    await press(tab, "w");
+    const words = "No broadphase has a wrong pair in the recorded frames.";
+    const right = { hasButton: false, faults: words, words };
+    const level = { ground: "none", hasGroundBox: false, isInLegend: false };
+    assert.deepEqual(await evaluate(rightAndLevel), { ...right, ...level });
 };
 
 const checkHeap = (pairs) => async (page) => {
@@ -349,6 +379,13 @@ const checkHeap = (pairs) => async (page) => {
     const counts = await evaluate("root.querySelector('.counts').textContent");
     assert(counts.startsWith(`${pairs.toLocaleString("en")} pairs overlap, too many`), counts);
 };
+
+// A broadphase that is wrong, and not ours.
+async function checkWrong(page) {
+    await begin(page);
+    const { broadphase, frame, drawn } = await page.evaluate("({ ...root.dataset })");
+    assert.deepEqual([broadphase, frame, drawn], ["forgetful", "5", "1"], "its first wrong frame");
+}
 
 async function checkWithoutWebGL2({ evaluate }) {
     assert.equal(await evaluate(ready), "without WebGL2");
@@ -362,7 +399,7 @@ const hideWebGL2 = (tab) =>
         source: "HTMLCanvasElement.prototype.getContext = () => null;",
     });
 
-const [chromium, foundFile, page, row, heap] = process.argv.slice(2);
+const [chromium, foundFile, page, row, heap, wrong] = process.argv.slice(2);
 const options = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--window-size=900,900"];
 const browser = new Browser(chromium, options, 180);
 const check = async (path, task, setUp) => {
@@ -375,6 +412,7 @@ try {
     await check(page, checkWithoutWebGL2, hideWebGL2);
     await check(row, checkRow(50));
     await check(heap, checkHeap(150_975));
+    await check(wrong, checkWrong);
 } finally {
     await browser.close();
 }

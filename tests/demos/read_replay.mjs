@@ -2,8 +2,9 @@
 //
 // node read_replay.mjs <recording.json>
 //
-// Reads a recording with the script that pages read it with, and tells as JSON, frame by frame, the numbers of all
-// objects and the pairs, and the steps of the ground if there is one. Frames are asked for from the last to the first and with few of them kept, which is harder.
+// Reads a recording with the script that pages read it with. Prints as JSON, frame by frame, the numbers of all
+// objects and the pairs; the steps of the ground, if there is one; and the index of the worst broadphase. Frames are
+// asked for from the last to the first and with few of them kept, which is harder.
 
 import { readFileSync } from "node:fs";
 
@@ -17,5 +18,11 @@ for (let frame = recording.frames - 1; frame >= 0; --frame) {
     const [numbers, pairs] = [recording.numbersOf(broadphase, frame), recording.pairsOf(broadphase, frame)];
     frames.unshift({ numbers: [...numbers], pairs: [...pairs] });
 }
-const steps = [...(recording.ground?.steps ?? [])];
-console.log(JSON.stringify({ every: recording.tracks[0].every, frames, steps }));
+console.log(
+    JSON.stringify({
+        every: recording.tracks[0].every,
+        frames,
+        steps: [...(recording.ground?.steps ?? [])],
+        worst: recording.broadphases.indexOf(recording.worst()),
+    }),
+);

@@ -41,9 +41,9 @@ std::array<BroadphaseKind, 2> kindsToReplay() {
         [](const BroadphaseNeeds& needs) -> std::unique_ptr<btBroadphaseInterface> {
         return std::make_unique<Forgets>(static_cast<int>(needs.objects) + 1);
     };
-    return {BroadphaseKind{"right", "a right one", "for tests", false, 1'000'000, true, make},
-            BroadphaseKind{"forgetful", "a wrong one", "for tests", false, 1'000'000, true,
-                           makeForgetful}};
+    return {BroadphaseKind{"forgetful", "a wrong one", "for tests", false, 1'000'000, true,
+                           makeForgetful},
+            BroadphaseKind{"right", "a right one", "for tests", true, 1'000'000, true, make}};
 }
 
 /// Writes the page of a comparison, and returns what it found of "forgetful" itself.
@@ -54,7 +54,7 @@ nlohmann::json comparePage(const TemporaryFolder& folder, const std::string& nam
     arguments.insert(arguments.end(), {"--html", folder.file(name), "--json", json});
     const Typed ran = typed(compareCommand(kinds), arguments);
     EXPECT_EQ(ran.exitCode, kExitOk) << ran.err;
-    return nlohmann::json::parse(std::ifstream(json))["broadphases"][1];
+    return nlohmann::json::parse(std::ifstream(json))["broadphases"][0];
 }
 
 std::string boxesInARow(int count, float apart) {
@@ -79,10 +79,12 @@ TEST(ReplayInBrowser, ShowsFramesPairsAndTheFirstWrongOne) {
         comparePage(folder, std::string(name) + ".html",
                     {"--file", folder.write("boxes.txt", boxes), "--frames", "1"});
     }
+    comparePage(folder, "wrong.html",
+                {"--objects", "1500", "--frames", "8", "--broadphases", "forgetful"});
     std::string command = "'" HASHPHASE_NODE "' '" HASHPHASE_BROWSE_REPLAY_SCRIPT
                           "' '" HASHPHASE_CHROMIUM "' '" +
                           folder.write("found.json", found.dump()) + "'";
-    for (const char* page : {"compare", "row", "heap"}) {
+    for (const char* page : {"compare", "row", "heap", "wrong"}) {
         command += " '" + folder.file(page) + ".html'";
     }
     EXPECT_EQ(std::system(command.c_str()), 0) << command;

@@ -337,6 +337,33 @@ TEST_F(ReplayRead, GivesTheHeightsOfTheGroundBack) {
     EXPECT_EQ(seen["steps"], sampleGround(heightOfSlope, kTenMetres).heights);
 }
 
+TEST_F(ReplayRead, TakesForWorstWhatMissesMostOfThoseWithARecordedWrongPair) {
+    if (!isThereNode()) {
+        GTEST_SKIP() << kWithoutNode;
+    }
+    const Boxes boxes = driftingFrames(200, 1).front();
+    const std::vector<PairKey> exact = overlappingPairs(boxes);
+    ASSERT_GT(exact.size(), 3U);
+    const auto worstOf = [&](const std::vector<std::array<std::size_t, 2>>& missingAndExtra) {
+        ReplaySettings settings = replaySettings();
+        settings.broadphases.resize(missingAndExtra.size());
+        ReplayRecording recording(settings);
+        for (std::size_t i = 0; i < missingAndExtra.size(); ++i) {
+            const auto [missing, extra] = missingAndExtra[i];
+            recording.add(
+                i, {boxes, exact, std::span(exact).first(missing), std::span(exact).first(extra)});
+        }
+        recording.finishFrame();
+        return recording.json();
+    };
+    EXPECT_EQ(read(worstOf({{0, 0}, {1, 0}, {0, 3}}))["worst"], 1) << "most missing ones";
+    EXPECT_EQ(read(worstOf({{1, 1}, {1, 3}, {1, 2}}))["worst"], 1) << "most extra ones of equals";
+    EXPECT_EQ(read(worstOf({{0, 0}, {0, 0}}))["worst"], 0) << "none is wrong";
+    Json json = worstOf({{0, 1}, {2, 0}});
+    json["broadphases"][1]["first"] = nullptr;
+    EXPECT_EQ(read(json)["worst"], 0) << "the others are not recorded";
+}
+
 TEST_F(ReplayRead, HasAFewBytesOfAFrameInWhichNothingMoves) {
     const Boxes boxes = driftingFrames(1'000, 1).front();
     ReplayTrack track(kTenMetres, firstNumbers(1'000), 0);
@@ -472,8 +499,10 @@ TEST(ReplayTab, IsInPagesOfComparisonsUnlessNotWanted) {
     EXPECT_TRUE(std::regex_search(page, std::regex("\"name\":\"hash\"[^}]*\"cellSize\":[0-9]")));
     EXPECT_TRUE(includes(page, "\"cellSize\":null")) << "of trees";
     std::vector<std::string> other = brief;
-    other.insert(other.end(), {"--scene", "uniform"});
-    EXPECT_TRUE(includes(pageOfCommand(other, folder), "\"ground\":null"));
+    other.insert(other.end(), {"--scene", "uniform", "--broadphases", "dbvt,hash,simple"});
+    const std::string boxes = pageOfCommand(other, folder);
+    EXPECT_TRUE(includes(boxes, "\"ground\":null"));
+    EXPECT_TRUE(includes(boxes, "\"opensOn\":1")) << "ours, wherever it was named";
     std::vector<std::string> fewer = brief;
     fewer.insert(fewer.end(), {"--replay-frames", "4"});
     EXPECT_TRUE(includes(pageOfCommand(fewer, folder), "of paper: the first 4 of 12 frames"));
