@@ -25,7 +25,7 @@ class Replay {
         this.look = {
             camera: this.camera,
             colouring: "cell",
-            // The judged broadphase's, or else the first's that has cells.
+            // The shown broadphase's, or else that of the first with cells.
             cellSize:
                 [this.broadphase, ...recording.broadphases].find((each) => each.cellSize)?.cellSize ??
                 Number((recording.typicalEdge * 8).toPrecision(2)),
@@ -126,8 +126,7 @@ class Replay {
         });
     }
 
-    // Wherever they are pressed while the tab is shown, but where something is typed or chosen; a focused
-    // button, as that of the tab itself, keeps its Space.
+    // While the tab is shown, whatever has the focus; but a control keeps the keys that it uses itself.
     followKeys() {
         const keys = {
             " ": () => this.togglePlaying(),
@@ -167,7 +166,7 @@ class Replay {
         dark.addEventListener("change", follow);
         follow();
         new ResizeObserver(() => this.redraw()).observe(this.canvas);
-        // A query knows one density: when it is no longer that, another one waits for the next.
+        // A query is about one density: after a change another query waits for the next change.
         const followDensity = () => {
             const query = matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
             const changed = () => {
@@ -179,7 +178,7 @@ class Replay {
         followDensity();
     }
 
-    // All that WebGL2 held is gone; the browser gives another context, which begins with nothing.
+    // The browser drops everything that WebGL2 held, and may give an empty context later.
     followLoss() {
         const { canvas, root } = this;
         canvas.addEventListener("webglcontextlost", (event) => {
@@ -188,8 +187,8 @@ class Replay {
             this.isLost = true;
             root.dataset.state = "lost";
             this.words.textContent =
-                "The browser has taken WebGL2 back. The picture returns when it gives it again; " +
-                "if it does not, load the page again.";
+                "The browser stopped WebGL2. The picture returns when the browser restores it. " +
+                "If it does not, reload the page.";
         });
         canvas.addEventListener("webglcontextrestored", () => {
             this.isLost = false;
@@ -237,7 +236,7 @@ class Replay {
         this.redraw();
     }
 
-    // Only where they are to be seen, and once a frame.
+    // If they are to be seen, and once a frame.
     setPairs() {
         if (this.look.pairs && this.numbers && this.linesOf !== this.numbers) {
             this.linesOf = this.numbers;
@@ -363,15 +362,15 @@ function startReplay(root) {
     const kept = { alpha: false, antialias: true, preserveDrawingBuffer: true };
     const gl = contents.querySelector("canvas.replay").getContext("webgl2", kept);
     if (!gl) {
-        const why = "this browser has no WebGL2, or it is turned off. What was wrong in its frames is in the table.";
-        fail("without WebGL2", `The recording cannot be replayed here: ${why}`);
+        const why = "This browser has no WebGL2, or WebGL2 is turned off.";
+        fail("without WebGL2", `${why} The replay needs it. The table lists the wrong pairs.`);
         return;
     }
     try {
         const json = JSON.parse(root.querySelector("script").textContent);
         new Replay(root, contents, gl, new Recording(json));
     } catch (error) {
-        fail("failed", `The recording could not be replayed: ${error.message}`);
+        fail("failed", `The replay failed: ${error.message}`);
     }
 }
 

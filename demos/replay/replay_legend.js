@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Zlib
 //
-// What is told beside the picture: what its colours mean, and how many pairs are wrong in each frame.
+// Texts next to the picture: what its colours mean, and how many pairs are wrong in each frame and in all.
 
 function element(tag, className, ...children) {
     const made = document.createElement(tag);
@@ -12,7 +12,7 @@ function element(tag, className, ...children) {
 const thousands = (number) => number.toLocaleString("en");
 const metres = (number) => `${Number(number.toPrecision(3))} m`;
 
-// A colour and what it stands for.
+// A colour and its meaning.
 const swatch = (colour, text) => {
     const box = element("span", "swatch");
     box.style.background = colour;
@@ -49,20 +49,20 @@ function legendOf({ colouring, heights, cellSize, ground, screen }, { low, broad
         legend.push(swatch(SCREENS[screen].ground, "terrain"));
     }
     if (colouring === "overlaps") {
-        const counts = ["overlaps none", "2", "4", "6", "8 or more others"];
+        const counts = ["0 overlaps", "2", "4", "6", "8 or more"];
         return [...legend, ...counts.map((count, i) => swatch(OVERLAP_COLOURS[i], count))];
     }
     if (colouring === "height") {
         const bar = element("span", "ramp");
         bar.style.background = `linear-gradient(to right, ${HEIGHT_COLOURS.join(", ")})`;
         const [from, to] = heights.map((height) => metres(low[1] + height));
-        return [...legend, element("span", "", `y = ${from} `, bar, ` ${to}`)];
+        return [...legend, element("span", "", `centre at y = ${from} `, bar, ` ${to}`)];
     }
     const owner = broadphases.find((each) => each.cellSize === cellSize)?.name;
-    const whose = owner ? `the finest of ${owner}` : "which is no broadphase's own size";
+    const whose = owner ? `the finest cells of ${owner}` : "no broadphase uses this size";
     const words =
-        `cells of ${metres(cellSize)}, ${whose}, in eight colours: cells side by side differ; ` +
-        "a body is in that of its lowest corner";
+        `other colours: the cell of an object's lowest corner. Cells are ${metres(cellSize)} wide ` +
+        `(${whose}); neighbouring cells differ in colour`;
     return [...legend, element("span", "", words)];
 }
 
@@ -74,7 +74,7 @@ function drawWrongPairs(canvas, { missing, extra }, frame, frames) {
     const most = Math.max(1, ...missing.map((count, i) => count + extra[i]));
     const step = canvas.width / frames;
     const bar = (at, from, count, colour) => {
-        // What is not zero is to be seen.
+        // Every number above 0 is visible.
         const height = count > 0 ? Math.max(2, (count / most) * canvas.height) : 0;
         context.fillStyle = colour;
         context.fillRect(at * step, canvas.height - from - height, Math.max(1, step - 1), height);

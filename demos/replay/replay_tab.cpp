@@ -30,14 +30,14 @@ std::uint64_t framesWithoutPairs(const Json& recording) {
 
 std::string whatIsRecorded(const Json& recording, const ReplaySettings& settings,
                            std::size_t framesRun) {
-    std::string text = "Recorded of " + settings.scene + ": the first " +
+    std::string text = "Recording of " + settings.scene + ": the first " +
                        thousands(recording["frames"]) + " of " + withThousands(framesRun) +
                        " frames";
     const std::string inAll = thousands(recording["objectsInAll"]) + " " + settings.noun;
     if (recording["objects"] < recording["objectsInAll"]) {
-        text += ", and of " + inAll + " the " + thousands(recording["objects"]) +
-                " that stand nearest to the middle in the first of them; pairs are drawn where "
-                "both are among these";
+        text += ", with " + thousands(recording["objects"]) + " of " + inAll +
+                ": those nearest to the middle in the first frame. Only pairs between them are "
+                "drawn";
     } else {
         text += " with all " + inAll;
     }
@@ -48,15 +48,16 @@ std::string whatIsRecorded(const Json& recording, const ReplaySettings& settings
     }
     if (recording["objectsCut"] > 0) {
         text += thousands(recording["objectsCut"]) + " of the " + settings.noun +
-                " reach beyond the drawn world, or hold a NaN: they are cut off at its end. ";
+                " leave the drawn world, or have a NaN: the picture cuts them off at its border. ";
     }
     if (const Json& ground = recording["ground"]; !ground.is_null()) {
         text += "The terrain is drawn from " + thousands(ground["columns"]) + " x " +
                 thousands(ground["rows"]) + " heights. ";
     }
     return text +
-           "Which pairs are wrong was told from the boxes as they are; they are drawn rounded to "
-           "a 65,535th of the drawn world. For more frames, in a larger page: --replay-frames.";
+           "Missing and extra pairs are found with the exact boxes; the picture rounds boxes to "
+           "1/65,535 of the drawn world. The option --replay-frames records more frames, in a "
+           "larger page.";
 }
 
 DataTable wrongPairsTable(const Json& recording) {
@@ -82,9 +83,9 @@ void addReplayTab(const ReplayRecording& recording, std::size_t framesRun, Page&
         return;
     }
     std::ostringstream html;
-    html << "<h2>Replay</h2>\n<div class=\"replay\">\n<noscript><p>The recording is replayed by "
-            "JavaScript, which is off, and WebGL2. What was wrong in its frames is in the "
-            "table.</p></noscript>\n<script type=\"application/json\">"
+    html << "<h2>Replay</h2>\n<div class=\"replay\">\n<noscript><p>The replay needs JavaScript, "
+            "which is off. The table lists the wrong pairs.</p></noscript>\n"
+            "<script type=\"application/json\">"
          << jsonInScript(json) << "</script>\n</div>\n<p class=\"quiet\">"
          << escaped(whatIsRecorded(json, recording.settings(), framesRun)) << "</p>\n";
     writeTable(wrongPairsTable(json), html);

@@ -4,9 +4,9 @@
 //
 // Plays the recordings of pages in headless Chromium, whose WebGL2 is drawn by the processor, and fails where it is
 // not as it is to be. Of the first page, a comparison that found what is in the file: what it opens on, each frame,
-// how the picture changes with what is chosen, keys, the first wrong pair, a loss of WebGL2, other sizes and densities
-// of the screen, and the words without WebGL2. Of boxes in a row: their colours, and that no pair is wrong; of a heap:
-// too many pairs; of a wrong broadphase alone: what it opens on.
+// how the picture changes with what is chosen, keys, the first wrong pair, a loss of WebGL2, other sizes and
+// densities of the screen, and the words without WebGL2. Of boxes in a row: their colours, and that no pair is wrong;
+// of a heap: too many pairs; of a wrong broadphase alone: what it opens on.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -305,7 +305,7 @@ const checkAll = (found) => async (page) => {
     const { evaluate } = page;
     await begin(page);
     const legend = await evaluate("root.querySelector('.legend').textContent");
-    assert(legend.includes("which is no broadphase's own size"), `none has cells: ${legend}`);
+    assert(legend.includes("no broadphase uses this size"), `none has cells: ${legend}`);
     assert(legend.includes("terrain"), legend);
     await checkOpening(page, found.firstFault);
     await checkKeysElsewhere(page);
@@ -391,7 +391,7 @@ async function checkWithoutWebGL2({ evaluate }) {
     assert.equal(await evaluate(ready), "without WebGL2");
     assert.equal(await evaluate(`document.querySelectorAll("canvas").length`), 0);
     const words = await evaluate(`document.querySelector("div.replay > p").textContent`);
-    assert(words.includes("this browser has no WebGL2"), words);
+    assert(words.includes("This browser has no WebGL2"), words);
 }
 
 const hideWebGL2 = (tab) =>

@@ -163,10 +163,11 @@ TEST(ReplayRecording, SaysWhatItLeavesOut) {
     const std::string all = tabOf(recorded(settings, frames));
     EXPECT_TRUE(includes(all, "a test: the first 2 of 500 frames with all 200 crates.")) << all;
     EXPECT_TRUE(includes(all, "In 2 of the frames there are more than 5 pairs, which are counted"));
-    EXPECT_TRUE(includes(all, "1 of the crates reach beyond the drawn world"));
+    EXPECT_TRUE(includes(all, "1 of the crates leave the drawn world, or have a NaN"));
+    EXPECT_FALSE(includes(all, "terrain"));
     settings.objects = 50;
     const ReplayRecording some = recorded(settings, frames);
-    EXPECT_TRUE(includes(tabOf(some), "of 200 crates the 50 that stand nearest to the middle"));
+    EXPECT_TRUE(includes(tabOf(some), "with 50 of 200 crates: those nearest to the middle"));
     EXPECT_LT(some.json()["tracks"][0]["pairs"][0], some.json()["tracks"][0]["pairsInAll"][0]);
 }
 
@@ -246,7 +247,7 @@ protected:
     static bool isThereNode() { return !std::string(HASHPHASE_NODE).empty(); }
     static constexpr const char* kWithoutNode = "Node.js is needed (Debian: nodejs).";
 
-    /// What tests/demos/read_replay.mjs says of the recording.
+    /// The output of tests/demos/read_replay.mjs.
     static Json read(const Json& recording) {
         const TemporaryFolder folder;
         const std::string command = "'" HASHPHASE_NODE "' '" HASHPHASE_READ_REPLAY_SCRIPT "' '" +
