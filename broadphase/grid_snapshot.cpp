@@ -17,13 +17,15 @@ namespace detail {
 namespace {
 
 constexpr const char* kPairsGoWithTheirGrid =
-    "Where there are Pairs, they are saved and restored with their grid.";
+    "GridSnapshot: Pairs are missing in save() or in restore(). If the grid has Pairs, pass them "
+    "instead of the grid, to both.";
 
 /// What a caller has done wrong; null for nothing.
 template <class Scalar>
 const char* faultOf(const Grid<Scalar>& grid, const Pairs<Scalar>* pairs) {
     if (grid.isWithinQuery()) {
-        return "A grid is neither saved nor restored within a query.";
+        return "GridSnapshot: save() or restore() was called from within a query of the grid. Call "
+               "it after the query returns.";
     }
     return grid.store().hasPairs != (pairs != nullptr) ? kPairsGoWithTheirGrid : nullptr;
 }
@@ -106,16 +108,18 @@ template <class Scalar>
 const char* GridSnapshot<Scalar>::faultFor(const Grid<Scalar>& grid,
                                            const Pairs<Scalar>* pairs) const {
     if (isEmpty()) {
-        return "Nothing was saved that could be restored.";
+        return "GridSnapshot::restore(): the snapshot is empty. Call save() or read() first.";
     }
     if (twin_->store.config != grid.store().config) {
-        return "A grid is restored with the settings that it was saved with.";
+        return "GridSnapshot::restore(): the grid has another GridConfig than the saved one. "
+               "Restore a grid with an equal GridConfig.";
     }
     if (twin_->hasPairs != (pairs != nullptr)) {
         return detail::kPairsGoWithTheirGrid;
     }
     if (twin_->hasSweeps != (detail::motionsOf(pairs) != nullptr)) {
-        return "Where Pairs follow Sweeps, they do so when they are restored.";
+        return "GridSnapshot::restore(): of the saved and the present Pairs, only one has Sweeps. "
+               "Give both Sweeps, or neither.";
     }
     return detail::faultOf(grid, pairs);
 }
@@ -159,7 +163,8 @@ void GridSnapshot<Scalar>::makeRoom(Pairs<Scalar>& pairs) const {
 
 template <class Scalar>
 void GridSnapshot<Scalar>::write(std::vector<std::byte>& bytes) const {
-    HASHPHASE_ASSERT(!isEmpty(), "Nothing was saved that could be written.");
+    HASHPHASE_ASSERT(!isEmpty(),
+                     "GridSnapshot::write(): the snapshot is empty. Call save() or read() first.");
     bytes.clear();
     if (!isEmpty()) {
         detail::writeTwin(*twin_, bytes);

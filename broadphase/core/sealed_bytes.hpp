@@ -61,21 +61,24 @@ inline void sealBytes(const Seal& seal, std::span<const std::byte> content,
     const auto size = head.read<std::uint64_t>();
     const auto sum = head.read<std::uint64_t>();
     if (head.isTorn() || kind != seal.kind) {
-        return std::string("The bytes are not ") + seal.name + ".";
+        return std::string("The bytes are not ") + seal.name + ". Pass bytes that write() made.";
     }
     if (version != seal.version) {
         return std::string("The bytes are ") + seal.name + " of version " +
-               std::to_string(version) + "; this library reads version " +
-               std::to_string(seal.version) + ".";
+               std::to_string(version) + ", but this library reads version " +
+               std::to_string(seal.version) +
+               ". Use the same version of hashphase to write and to read.";
     }
     if (size != head.left()) {
-        return std::string("The bytes of ") + seal.name + " are " + std::to_string(head.left()) +
-               ", but " + std::to_string(size) + " were written.";
+        return std::string("The bytes of ") + seal.name +
+               " have the wrong length: " + std::to_string(head.left()) + " are here, but " +
+               std::to_string(size) + " were written. Pass all of them, and no others.";
     }
     content = head.rest();
-    return checksum(content) == sum ? std::string()
-                                    : std::string("The bytes of ") + seal.name +
-                                          " have changed: their checksum is wrong.";
+    return checksum(content) == sum
+               ? std::string()
+               : std::string("The bytes of ") + seal.name +
+                     " are damaged: their checksum is wrong. Read or receive them again.";
 }
 
 }  // namespace hashphase::detail

@@ -26,10 +26,12 @@ public:
 
     [[nodiscard]] std::string readAll(std::unique_ptr<GridTwin<Scalar>>& twin) {
         if (from_.read<std::uint8_t>() != sizeof(Scalar)) {
-            return "The bytes are a snapshot of a grid of the other precision.";
+            return "The bytes are a snapshot of a grid of the other precision. Read them with the "
+                   "Scalar (float or double) that wrote them.";
         }
         if (!readSettings(twin)) {
-            return "The bytes of a snapshot of a grid have settings that no grid can have.";
+            return "The bytes of a snapshot of a grid have an invalid GridConfig, so write() did "
+                   "not make them. Write the snapshot again.";
         }
         twin_ = twin.get();
         const char* const part = !readProxies() || !readFreeLists()   ? "proxies"
@@ -38,8 +40,8 @@ public:
                                  : from_.isTorn() || from_.left() > 0 ? "length"
                                                                       : nullptr;
         return part != nullptr
-                   ? "The bytes of a snapshot of a grid cannot have been written: their " +
-                         std::string(part) + " contradict themselves."
+                   ? "The bytes of a snapshot of a grid are invalid (" + std::string(part) +
+                         "), so write() did not make them. Write the snapshot again."
                    : std::string();
     }
 

@@ -35,7 +35,7 @@ std::string WorldSnapshot::restore(btDiscreteDynamicsWorld& world,
                                    SpatialHashBroadphase& broadphase,
                                    const Returned& returned) const {
     if (isEmpty()) {
-        return "Nothing was saved that could be restored.";
+        return "WorldSnapshot::restore(): the snapshot is empty. Call save() or read() first.";
     }
     std::string fault = detail::WorldImage::faultOf(world, broadphase);
     if (fault.empty()) {
@@ -51,7 +51,8 @@ std::string WorldSnapshot::restore(btDiscreteDynamicsWorld& world,
 
 std::string WorldSnapshot::write(std::vector<std::byte>& bytes) const {
     bytes.clear();
-    return isEmpty() ? "Nothing was saved that could be written." : image_->write(bytes);
+    return isEmpty() ? "WorldSnapshot::write(): the snapshot is empty. Call save() or read() first."
+                     : image_->write(bytes);
 }
 
 std::string WorldSnapshot::read(std::span<const std::byte> bytes, btDiscreteDynamicsWorld& world,

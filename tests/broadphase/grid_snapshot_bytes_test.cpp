@@ -69,21 +69,26 @@ TEST(GridSnapshot, RefusesBytesThatAreTornOrChanged) {
     std::vector<std::byte> bytes;
     between.before.snapshot.write(bytes);
     GridSnapshot<float> snapshot;
-    EXPECT_EQ(snapshot.read({}), "The bytes are not a snapshot of a grid.");
+    EXPECT_EQ(snapshot.read({}),
+              "The bytes are not a snapshot of a grid. Pass bytes that write() made.");
     std::vector<std::byte> other = bytes;
     other.pop_back();
-    EXPECT_NE(snapshot.read(other).find("were written"), std::string::npos);
+    EXPECT_NE(snapshot.read(other).find("were written. Pass all of them, and no others."),
+              std::string::npos);
     other = bytes;
     other[bytes.size() / 2] ^= std::byte{1};
     EXPECT_EQ(snapshot.read(other),
-              "The bytes of a snapshot of a grid have changed: their checksum is wrong.");
+              "The bytes of a snapshot of a grid are damaged: their checksum is wrong. Read or "
+              "receive them again.");
     other = bytes;
     other[8] = std::byte{9};
     EXPECT_EQ(snapshot.read(other),
-              "The bytes are a snapshot of a grid of version 9; this "
-              "library reads version 1.");
+              "The bytes are a snapshot of a grid of version 9, but this library reads version 1. "
+              "Use the same version of hashphase to write and to read.");
     GridSnapshot<double> ofDouble;
-    EXPECT_EQ(ofDouble.read(bytes), "The bytes are a snapshot of a grid of the other precision.");
+    EXPECT_EQ(ofDouble.read(bytes),
+              "The bytes are a snapshot of a grid of the other precision. Read them with the "
+              "Scalar (float or double) that wrote them.");
     EXPECT_TRUE(snapshot.isEmpty());
     EXPECT_EQ(snapshot.read(bytes), "");
 }

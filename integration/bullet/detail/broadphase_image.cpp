@@ -32,15 +32,18 @@ void BroadphaseImage::forEachKept(auto& broadphase, auto& image, const Visit& vi
 std::string BroadphaseImage::faultOf(const SpatialHashBroadphase& broadphase) {
     const PairCache* const cache = broadphase.watch_.cache;
     if (cache == nullptr) {
-        return "The pair cache is not a hashphase::PairCache.";
+        return "The broadphase's pair cache is not a hashphase::PairCache, which a snapshot needs. "
+               "Make the broadphase with one.";
     }
     if (broadphase.isWorld()) {
-        return "The broadphase is one of many worlds.";
+        return "The broadphase is a world of a WorldsBroadphase, which snapshots do not support. "
+               "Use a SpatialHashBroadphase for the world.";
     }
     const bool isWithin = cache->processDepth_ > 0 || broadphase.isApplying_ ||
                           QueryScope::isWithin(cache) || broadphase.isCalculating() ||
                           QueryScope::isWithin(&broadphase.grid_.store());
-    return isWithin ? "A callback of the broadphase or of its pair cache is under way."
+    return isWithin ? "The snapshot was used from a callback of the broadphase or of its pair "
+                      "cache. Use it between steps."
                     : std::string();
 }
 

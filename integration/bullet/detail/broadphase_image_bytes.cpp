@@ -72,7 +72,7 @@ std::string BroadphaseImage::read(ByteReader& from, std::span<btCollisionObject*
                                   const SpatialHashBroadphase& broadphase) {
     const auto gridSize = from.read<std::uint64_t>();
     if (gridSize > from.left()) {
-        return "Its bytes end too soon.";
+        return "They end too soon. Pass all that write() made.";
     }
     std::string fault = grid_.read(from.rest().first(static_cast<std::size_t>(gridSize)));
     from.skip(static_cast<std::size_t>(gridSize));
@@ -95,7 +95,8 @@ std::string BroadphaseImage::read(ByteReader& from, std::span<btCollisionObject*
     seenCount_ = 0;
     retired_.clear();
     isSorted_ = false;
-    return isSound ? std::string() : "Its proxies or pairs contradict themselves.";
+    return isSound ? std::string()
+                   : "Their proxies or pairs are invalid. Write the snapshot again.";
 }
 
 bool BroadphaseImage::readProxies(ByteReader& from, std::span<btCollisionObject* const> objects) {

@@ -27,12 +27,14 @@ public:
         }
         const AlgorithmKind kind = kindOf(a, b);
         if (!image_.isOfKind(*algorithm, kind)) {
-            image_.fault_ = "A collision algorithm is not one of Bullet's default ones.";
+            image_.fault_ =
+                "A pair has a collision algorithm that a snapshot cannot keep. Use Bullet's "
+                "default algorithms only.";
             return;
         }
         if (kind != AlgorithmKind::leaf && !isUpToDate(*algorithm, a, b)) {
             image_.fault_ =
-                "A compound shape has changed since its pairs were last looked at. Call "
+                "A compound shape changed after the last step. Call "
                 "SpatialHashBroadphase::shapeChanged() for its object, and step the world.";
             return;
         }
@@ -124,7 +126,8 @@ std::string ContactImage::end(const btCollisionDispatcher& dispatcher) {
     if (count != manifolds_.size()) {
         std::ostringstream sentence;
         sentence << "Of " << count << " contact manifolds, " << count - manifolds_.size()
-                 << " belong to no pair of the world, its ghosts or its predicted contacts.";
+                 << " belong to no pair of the world, its ghosts or its predicted contacts. "
+                    "Release them, and share the dispatcher with no other world.";
         return sentence.str();
     }
     heads_.reserve(count);
@@ -147,9 +150,9 @@ std::string ContactImage::end(const btCollisionDispatcher& dispatcher) {
             haveUserData |= point.m_userPersistentData != nullptr;
         }
     }
-    return haveUserData
-               ? "A contact point has user data (m_userPersistentData), which ends with it."
-               : std::string();
+    return haveUserData ? "A contact point has user data (m_userPersistentData), which a snapshot "
+                          "cannot keep. Keep that data elsewhere."
+                        : std::string();
 }
 
 std::size_t ContactImage::memoryBytes() const noexcept {

@@ -38,8 +38,8 @@ btCollisionObject* theWorld() {
 }
 
 std::string contradiction(const char* what) {
-    return std::string("The bytes of a snapshot of a world cannot have been written: its ") + what +
-           " contradict themselves.";
+    return std::string("The bytes of a snapshot of a world are invalid (") + what +
+           "), so write() did not make them. Write the snapshot again.";
 }
 
 }  // namespace
@@ -48,8 +48,8 @@ std::string contradiction(const char* what) {
 
 std::string WorldImage::write(std::vector<std::byte>& bytes) const {
     if (broadphase.retiredCount() > 0) {
-        return "Algorithms of pairs that were removed since the last step wait to be freed. Save "
-               "after the next step.";
+        return "Pairs were removed after the last step, and their algorithms are not freed yet. "
+               "Step the world, then save and write it again.";
     }
     ObjectNumbers numbers;
     ObjectNumbers jointNumbers;
@@ -103,8 +103,9 @@ std::string WorldImage::write(std::vector<std::byte>& bytes) const {
         writeNumber(ghost, numbers);
     }
     if (!areAllThere || !broadphase.areClientsAmong(numbers)) {
-        return "Something is not in the world: an object that another one ignores, a joint of a "
-               "body, a body of a joint, the ghost of a character, or the object of a proxy.";
+        return "Something that the world refers to is not in it: an ignored object, a joint of a "
+               "body, a body of a joint, the ghost of a character, or the object of a proxy. Add "
+               "it, or drop the reference, and save again.";
     }
     broadphase.write(to, numbers);
     ghosts.write(to);
@@ -127,7 +128,7 @@ std::string WorldImage::read(std::span<const std::byte> bytes, btDiscreteDynamic
     if (from.read<std::uint8_t>() != sizeof(btScalar) ||
         from.read<std::int32_t>() != BT_BULLET_VERSION) {
         return "The bytes are a snapshot of a world of another Bullet: of the other precision, or "
-               "of another version.";
+               "of another version. Read them with the Bullet that wrote them.";
     }
     fault = readObjects(from, world, returned);
     if (fault.empty()) {
@@ -145,7 +146,7 @@ std::string WorldImage::read(std::span<const std::byte> bytes, btDiscreteDynamic
     }
     fault = broadphase.read(from, numbered, ofBroadphase);
     if (!fault.empty()) {
-        return "The bytes of a snapshot of a world cannot be taken: " + fault;
+        return "The bytes of a snapshot of a world do not fit. " + fault;
     }
     if (!ghosts.read(from, broadphase) || !areProxiesRight() || !areGhostsRight()) {
         return contradiction("proxies");
@@ -204,15 +205,16 @@ std::string WorldImage::readObjects(ByteReader& from, btDiscreteDynamicsWorld& w
         if (saved.object->getInternalType() != saved.type ||
             shapeRevisionOf(saved.object->getCollisionShape()) != saved.shapeRevision) {
             return "The object with the unique id " + std::to_string(saved.uniqueId) +
-                   " is not of the type, or does not have the compound shape, that was saved.";
+                   " has another type or compound shape than the saved one. Build both worlds by "
+                   "the same calls.";
         }
         saved.shape = saved.object->getCollisionShape();
         saved.rootShape = saved.shape;
         objects.push_back(saved);
     }
     if (!missing.empty()) {
-        return "Objects with these unique ids are not in the world; hand them over in this "
-               "order: " +
+        return "Objects are not in the world. Hand them over as Returned::objects, in the order of "
+               "these unique ids: " +
                missing + ".";
     }
     return areDistinct() ? takeNumbers(from, numbers) : contradiction("objects");
@@ -306,7 +308,7 @@ std::string WorldImage::readJoints(ByteReader& from, btDiscreteDynamicsWorld& wo
         found = found != nullptr ? found : handedOver.next();
         if (found == nullptr || !isBetween(*found) || !isKnown(*found)) {
             return "Joint " + std::to_string(i) +
-                   ", of its type and between its bodies, is not in the world. Hand it over as "
+                   " is not in the world: none there has its type and bodies. Hand it over as "
                    "Returned::joints.";
         }
         joints.push_back({found, type, &found->getRigidBodyA(), &found->getRigidBodyB()});

@@ -50,20 +50,22 @@ int shapeRevisionOf(const btCollisionShape* shape) {
 std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
                                 const SpatialHashBroadphase& broadphase) {
     if (world.getBroadphase() != &broadphase) {
-        return "The broadphase is not that of the world.";
+        return "The world has another broadphase. Pass the broadphase of the world.";
     }
     std::string fault = BroadphaseImage::faultOf(broadphase);
     if (!fault.empty()) {
         return fault;
     }
     if (asCollisionDispatcher(world.getDispatcher()) == nullptr) {
-        return "The world's dispatcher is not a btCollisionDispatcher.";
+        return "The world's dispatcher is not a btCollisionDispatcher, which a snapshot needs. "
+               "Make the world with one.";
     }
     if (asSequentialImpulseSolver(world.getConstraintSolver()) == nullptr) {
-        return "The world's solver is not a btSequentialImpulseConstraintSolver.";
+        return "The world's solver is not a btSequentialImpulseConstraintSolver, which a snapshot "
+               "needs. Make the world with one.";
     }
     if (hasMultiBodies(world)) {
-        return "The world has multibodies.";
+        return "The world has multibodies, which a snapshot cannot keep. Remove them first.";
     }
     std::ostringstream sentence;
     const btCollisionObjectArray& objects = world.getCollisionObjectArray();
@@ -72,14 +74,16 @@ std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
                               btCollisionObject::CO_RIGID_BODY | btCollisionObject::CO_GHOST_OBJECT;
         if ((objects[i]->getInternalType() & ~known) != 0) {
             sentence << "Object " << i << " of the world is "
-                     << nameOfType(objects[i]->getInternalType()) << ".";
+                     << nameOfType(objects[i]->getInternalType())
+                     << ", which a snapshot cannot keep. Remove it first.";
             return sentence.str();
         }
     }
     for (int i = 0; i < world.getNumConstraints(); ++i) {
         if (!isKnown(*world.getConstraint(i))) {
             sentence << "Joint " << i << " of the world is of type "
-                     << world.getConstraint(i)->getConstraintType() << ", which is not known.";
+                     << world.getConstraint(i)->getConstraintType()
+                     << ", which a snapshot cannot keep. Remove it first.";
             return sentence.str();
         }
     }
@@ -87,8 +91,8 @@ std::string WorldImage::faultOf(btDiscreteDynamicsWorld& world,
     for (int i = 0; i < actions.size(); ++i) {
         if (asCharacter(actions[i]) == nullptr) {
             sentence << "Action " << i
-                     << " of the world is not a btKinematicCharacterController; vehicles are such "
-                        "actions.";
+                     << " of the world is not a btKinematicCharacterController, but a vehicle or "
+                        "another action, which a snapshot cannot keep. Remove it first.";
             return sentence.str();
         }
     }
@@ -150,23 +154,30 @@ std::string WorldImage::findObjects(btDiscreteDynamicsWorld& world,
                    ") " + what;
         };
         if (!isThere && !isHandedOver(saved.object)) {
-            return sentence("was removed from the world since. Hand it over as Returned::objects.");
+            return sentence(
+                "was removed from the world after it was saved. Hand it over as "
+                "Returned::objects.");
         }
         const btBroadphaseProxy* const proxy = saved.object->getBroadphaseHandle();
         if (!isThere && proxy != nullptr) {
-            return sentence("is handed over, but it is in another world.");
+            return sentence(
+                "is handed over, but it is in another world. Remove it from that world first.");
         }
         if (saved.object->getInternalType() != saved.type) {
-            return sentence("was removed from the world since, and another is at its address.");
+            return sentence(
+                "was deleted after it was saved, and another object has its address. Keep objects "
+                "while a snapshot has them.");
         }
         if (isThere && proxy->m_uniqueId != saved.uniqueId &&
             saved.object->getCollisionShape() != saved.shape && !isHandedOver(saved.object)) {
             return sentence(
-                "was removed from the world since, and one with another shape was added at its "
-                "address. If it is the same, hand it over as Returned::objects.");
+                "was removed after it was saved, and an object with another shape was added at its "
+                "address. If it is the same object, hand it over as Returned::objects.");
         }
         if (shapeRevisionOf(saved.shape) != saved.shapeRevision) {
-            return sentence("has a compound shape that has changed since.");
+            return sentence(
+                "has a compound shape that changed after it was saved. Save again after such a "
+                "change.");
         }
     }
     return {};
@@ -179,14 +190,16 @@ std::string WorldImage::findJoints(btDiscreteDynamicsWorld& world, const Returne
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const SavedJoint& saved = joints[i];
         const auto sentence = [&](const char* what) {
-            return "Joint " + std::to_string(i) + " was removed from the world since" + what;
+            return "Joint " + std::to_string(i) + " was removed from the world after it was saved" +
+                   what;
         };
         if (!isPresent(saved.joint) && !isHandedOver(saved.joint)) {
             return sentence(". Hand it over as Returned::joints.");
         }
         if (saved.joint->getConstraintType() != saved.type ||
             &saved.joint->getRigidBodyA() != saved.a || &saved.joint->getRigidBodyB() != saved.b) {
-            return sentence(", and another is at its address.");
+            return sentence(
+                ", and another joint has its address. Keep joints while a snapshot has them.");
         }
     }
     return {};
@@ -200,11 +213,13 @@ std::string WorldImage::findActions(btDiscreteDynamicsWorld& world,
     for (std::size_t i = 0; i < actions.size(); ++i) {
         if (!isPresent(actions[i]) && !isHandedOver(actions[i])) {
             return "Action " + std::to_string(i) +
-                   " was removed from the world since. Hand it over as Returned::actions.";
+                   " was removed from the world after it was saved. Hand it over as "
+                   "Returned::actions.";
         }
         if (asCharacter(actions[i]) == nullptr) {
             return "Action " + std::to_string(i) +
-                   " was removed from the world since, and another is at its address.";
+                   " was deleted after it was saved, and another action has its address. Keep "
+                   "actions while a snapshot has them.";
         }
     }
     return {};

@@ -38,8 +38,8 @@ TEST(WorldSnapshot, IsReadWhereObjectsHaveToBeHandedOver) {
     few.world.removeRigidBody(few.pool[2].get());
     WorldSnapshot received;
     EXPECT_EQ(received.read(bytes, few.world, few.broadphase),
-              "Objects with these unique ids are not in the world; hand them over in this order: "
-              "4, 6.");
+              "Objects are not in the world. Hand them over as Returned::objects, in the order of "
+              "these unique ids: 4, 6.");
     const std::array<btCollisionObject*, 2> objects{few.pool[2].get(), few.pool[4].get()};
     EXPECT_NE(received.read(bytes, few.world, few.broadphase, {.objects = objects})
                   .find("Hand it over as Returned::joints."),
@@ -60,10 +60,11 @@ TEST(WorldSnapshot, IsNotReadIntoAnotherWorld) {
     ASSERT_EQ(snapshot.write(bytes), "");
     WorldSnapshot received;
     EXPECT_EQ(received.read({}, few.world, few.broadphase),
-              "The bytes are not a snapshot of a world.");
+              "The bytes are not a snapshot of a world. Pass bytes that write() made.");
     bytes[100] ^= std::byte{4};
     EXPECT_EQ(received.read(bytes, few.world, few.broadphase),
-              "The bytes of a snapshot of a world have changed: their checksum is wrong.");
+              "The bytes of a snapshot of a world are damaged: their checksum is wrong. Read or "
+              "receive them again.");
     bytes[100] ^= std::byte{4};
     PoolWorld empty;
     EXPECT_NE(received.read(bytes, empty.world, empty.broadphase).find("2, 3, 4, 5, 6, 7"),
@@ -76,8 +77,8 @@ TEST(WorldSnapshot, IsNotReadIntoAnotherWorld) {
                                                  empty.pool[2].get(), empty.pool[3].get(),
                                                  empty.pool[4].get()};
     EXPECT_EQ(received.read(bytes, empty.world, empty.broadphase, {.objects = five}),
-              "The object with the unique id 2 is not of the type, or does not have the compound "
-              "shape, that was saved.");
+              "The object with the unique id 2 has another type or compound shape than the saved "
+              "one. Build both worlds by the same calls.");
     empty.world.removeCollisionObject(&ghost);
 }
 

@@ -121,8 +121,8 @@ TEST(WorldSnapshot, NamesWhatWasRemovedSinceAndChangesNothing) {
     few.world.stepSimulation(btScalar(1) / 60, 0);
     const std::uint64_t without = wholeState(few.world);
     EXPECT_EQ(few.restoreWithout(snapshot),
-              "Object 4 (unique id 5) was removed from the world since. Hand it over as "
-              "Returned::objects.");
+              "Object 4 (unique id 5) was removed from the world after it was saved. Hand it over "
+              "as Returned::objects.");
     EXPECT_EQ(wholeState(few.world), without);
     btCollisionObject* const removed = few.pool[3].get();
     EXPECT_EQ(few.restoreWithout(snapshot, {.objects = {&removed, 1}}), "");
@@ -139,8 +139,9 @@ TEST(WorldSnapshot, NamesAJointThatWasRemovedSince) {
     ASSERT_EQ(few.save(snapshot), "");
     few.world.removeConstraint(&joint);
     joint.enableAngularMotor(true, 5, 1);
-    EXPECT_EQ(few.restoreWithout(snapshot),
-              "Joint 0 was removed from the world since. Hand it over as Returned::joints.");
+    EXPECT_EQ(
+        few.restoreWithout(snapshot),
+        "Joint 0 was removed from the world after it was saved. Hand it over as Returned::joints.");
     btTypedConstraint* const removed = &joint;
     EXPECT_EQ(few.restoreWithout(snapshot, {.joints = {&removed, 1}}), "");
     EXPECT_EQ(few.world.getNumConstraints(), 1);
@@ -161,9 +162,10 @@ TEST(WorldSnapshot, AsksWhetherAnObjectOfAnotherShapeIsTheSame) {
     ASSERT_NE(&few.ball, &few.shapeOf(4));
     few.world.addRigidBody(&body);
     few.world.stepSimulation(btScalar(1) / 60, 0);
-    EXPECT_EQ(few.restoreWithout(snapshot),
-              "Object 5 (unique id 6) was removed from the world since, and one with another shape "
-              "was added at its address. If it is the same, hand it over as Returned::objects.");
+    EXPECT_EQ(
+        few.restoreWithout(snapshot),
+        "Object 5 (unique id 6) was removed after it was saved, and an object with another shape "
+        "was added at its address. If it is the same object, hand it over as Returned::objects.");
     btCollisionObject* const same = &body;
     EXPECT_EQ(few.restoreWithout(snapshot, {.objects = {&same, 1}}), "");
     EXPECT_EQ(wholeState(few.world), state);

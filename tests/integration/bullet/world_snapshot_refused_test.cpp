@@ -37,7 +37,8 @@ TEST(WorldSnapshot, RefusesACompoundShapeThatHasChanged) {
     ASSERT_EQ(few.save(snapshot), "");
     inner.addChildShape(btTransform::getIdentity(), &few.box);
     EXPECT_EQ(few.restoreWithout(snapshot),
-              "Object 7 (unique id 8) has a compound shape that has changed since.");
+              "Object 7 (unique id 8) has a compound shape that changed after it was saved. Save "
+              "again after such a change.");
     few.world.removeRigidBody(&body);
 }
 
@@ -45,22 +46,24 @@ TEST(WorldSnapshot, RefusesWhatItDoesNotCover) {
     WorldSnapshot snapshot;
     FewBodies few;
     SpatialHashBroadphase other;
-    EXPECT_EQ(snapshot.save(few.world, other), "The broadphase is not that of the world.");
+    EXPECT_EQ(snapshot.save(few.world, other),
+              "The world has another broadphase. Pass the broadphase of the world.");
     EXPECT_EQ(snapshot.restore(few.world, few.broadphase),
-              "Nothing was saved that could be restored.");
+              "WorldSnapshot::restore(): the snapshot is empty. Call save() or read() first.");
 
     btRaycastVehicle::btVehicleTuning tuning;
     btDefaultVehicleRaycaster caster(&few.world);
     btRaycastVehicle vehicle(tuning, few.pool[0].get(), &caster);
     few.world.addAction(&vehicle);
     EXPECT_EQ(few.save(snapshot),
-              "Action 0 of the world is not a btKinematicCharacterController; vehicles are such "
-              "actions.");
+              "Action 0 of the world is not a btKinematicCharacterController, but a vehicle or "
+              "another action, which a snapshot cannot keep. Remove it first.");
     few.world.removeAction(&vehicle);
 
     few.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0).m_userPersistentData = &few;
     EXPECT_EQ(few.save(snapshot),
-              "A contact point has user data (m_userPersistentData), which ends with it.");
+              "A contact point has user data (m_userPersistentData), which a snapshot cannot keep. "
+              "Keep that data elsewhere.");
     few.dispatcher.getManifoldByIndexInternal(0)->getContactPoint(0).m_userPersistentData = nullptr;
     EXPECT_TRUE(snapshot.isEmpty());
 
@@ -78,9 +81,13 @@ TEST(WorldSnapshot, RefusesWhatItDoesNotCover) {
         }
     };
     Type::set(stranger, btCollisionObject::CO_SOFT_BODY);
-    EXPECT_EQ(few.save(snapshot), "Object 7 of the world is a soft body.");
+    EXPECT_EQ(
+        few.save(snapshot),
+        "Object 7 of the world is a soft body, which a snapshot cannot keep. Remove it first.");
     Type::set(stranger, btCollisionObject::CO_FEATHERSTONE_LINK);
-    EXPECT_EQ(few.save(snapshot), "Object 7 of the world is a link of a multibody.");
+    EXPECT_EQ(few.save(snapshot),
+              "Object 7 of the world is a link of a multibody, which a snapshot cannot keep. "
+              "Remove it first.");
     Type::set(stranger, btCollisionObject::CO_COLLISION_OBJECT);
     EXPECT_EQ(few.save(snapshot), "");
     few.world.removeCollisionObject(&stranger);
@@ -96,7 +103,8 @@ TEST(WorldSnapshot, RefusesOtherPairCachesSolversAndMultibodies) {
         btSequentialImpulseConstraintSolver solver;
         btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
         EXPECT_EQ(snapshot.save(world, broadphase),
-                  "The pair cache is not a hashphase::PairCache.");
+                  "The broadphase's pair cache is not a hashphase::PairCache, which a snapshot "
+                  "needs. Make the broadphase with one.");
     }
     {
         struct OwnSolver : btConstraintSolver {
@@ -113,7 +121,8 @@ TEST(WorldSnapshot, RefusesOtherPairCachesSolversAndMultibodies) {
         SpatialHashBroadphase broadphase;
         btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
         EXPECT_EQ(snapshot.save(world, broadphase),
-                  "The world's solver is not a btSequentialImpulseConstraintSolver.");
+                  "The world's solver is not a btSequentialImpulseConstraintSolver, which a "
+                  "snapshot needs. Make the world with one.");
     }
     SpatialHashBroadphase broadphase;
     btMultiBodyConstraintSolver solver;
@@ -122,7 +131,8 @@ TEST(WorldSnapshot, RefusesOtherPairCachesSolversAndMultibodies) {
     btMultiBody body(0, 1, btVector3(1, 1, 1), false, false);
     body.finalizeMultiDof();
     world.addMultiBody(&body);
-    EXPECT_EQ(snapshot.save(world, broadphase), "The world has multibodies.");
+    EXPECT_EQ(snapshot.save(world, broadphase),
+              "The world has multibodies, which a snapshot cannot keep. Remove them first.");
     world.removeMultiBody(&body);
 }
 
@@ -145,7 +155,8 @@ TEST(WorldSnapshot, RefusesCompoundsThatHaveChangedSinceTheStep) {
     WorldSnapshot snapshot;
     ASSERT_EQ(few.save(snapshot), "");
     compound.removeChildShapeByIndex(3);
-    EXPECT_NE(few.save(snapshot).find("A compound shape has changed"), std::string::npos);
+    EXPECT_NE(few.save(snapshot).find("A compound shape changed after the last step"),
+              std::string::npos);
     EXPECT_TRUE(snapshot.isEmpty());
     for (btRigidBody* each : {&body, &twin}) {
         few.broadphase.shapeChanged(each->getBroadphaseHandle(), &few.dispatcher);
@@ -189,7 +200,9 @@ TEST(WorldSnapshot, RefusesAlgorithmsOfTheProgram) {
     pool.add(2, btVector3(0, btScalar(1.2), 0));
     pool.world.stepSimulation(btScalar(1) / 60, 0);
     WorldSnapshot snapshot;
-    EXPECT_EQ(pool.save(snapshot), "A collision algorithm is not one of Bullet's default ones.");
+    EXPECT_EQ(pool.save(snapshot),
+              "A pair has a collision algorithm that a snapshot cannot keep. Use Bullet's default "
+              "algorithms only.");
     EXPECT_TRUE(snapshot.isEmpty());
 }
 
@@ -203,7 +216,9 @@ TEST(WorldSnapshot, RefusesOneOfManyWorlds) {
     btSequentialImpulseConstraintSolver solver;
     btDiscreteDynamicsWorld world(&dispatcher, &worlds.world(0), &solver, &configuration);
     WorldSnapshot snapshot;
-    EXPECT_EQ(snapshot.save(world, worlds.world(0)), "The broadphase is one of many worlds.");
+    EXPECT_EQ(snapshot.save(world, worlds.world(0)),
+              "The broadphase is a world of a WorldsBroadphase, which snapshots do not support. "
+              "Use a SpatialHashBroadphase for the world.");
 }
 
 TEST(WorldSnapshot, IsNotWrittenWhereSomethingIsNotInTheWorld) {
