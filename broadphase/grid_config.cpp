@@ -19,7 +19,7 @@ std::string configError(const GridConfig& config) {
     // Each test is phrased so that NaN fails it.
     if (!(config.cellSize == 0 || (config.cellSize >= 1e-30 && config.cellSize <= 1e30))) {
         return rangeError("cellSize", config.cellSize,
-                          "0 (choose automatically) or between 1e-30 and 1e30");
+                          "0 (choose automatically) or between 1e-30 and 1e30 [m]");
     }
     if (!(config.levelRatio >= 2 && config.levelRatio <= 64)) {
         return rangeError("levelRatio", config.levelRatio, "between 2 and 64");
@@ -29,7 +29,7 @@ std::string configError(const GridConfig& config) {
     }
     if (config.slack && !(*config.slack >= 0 && *config.slack <= 1e30)) {
         return rangeError("slack", *config.slack,
-                          "empty (follow each proxy's motion) or between 0 and 1e30");
+                          "empty (follow each proxy's motion) or between 0 and 1e30 [m]");
     }
     return {};
 }

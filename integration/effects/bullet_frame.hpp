@@ -51,11 +51,12 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     if (effects.motion && !(effects.motion->bounds.min().maxCoeff() == -infinity &&
                             effects.motion->bounds.max().minCoeff() == infinity)) {
-        return "motion.bounds is not for Bullet: leave it out, and put static planes there.";
+        return "motion.bounds is set, but Bullet has no such setting. Leave it out, and add static "
+               "planes instead.";
     }
     if (effects.sleeping && effects.sleeping->interestRadius < infinity) {
-        return "sleeping.interestRadius is not for Bullet: leave it out, and deactivate what is "
-               "far.";
+        return "sleeping.interestRadius is set, but Bullet has no such setting. Leave it out, and "
+               "deactivate far bodies yourself.";
     }
     return {};
 }

@@ -31,14 +31,15 @@ std::string namesOf(EffectSet effects) {
 
 UndeclaredEffect::UndeclaredEffect(Effect effect, std::string_view call)
     : std::logic_error(std::string(call) + " needs " + std::string(nameOf(effect)) +
-                       ", which the scene does not declare: set SceneEffects::" +
+                       ", which the scene does not declare. Set SceneEffects::" +
                        std::string(nameOf(effect)) + '.'),
       effect_(effect) {}
 
 UndeclaredEffect::UndeclaredEffect(EffectSet oneOf, std::string_view call)
-    : std::logic_error(std::string(call) +
-                       " needs one of these, of which the scene declares none: " + namesOf(oneOf) +
-                       '.'),
+    : std::logic_error(
+          std::string(call) +
+          " needs one of these effects, but the scene declares none. Set one in SceneEffects: " +
+          namesOf(oneOf) + '.'),
       effect_(*std::find_if(kAllEffects.begin(), kAllEffects.end(),
                             [oneOf](Effect effect) { return oneOf.contains(effect); })) {}
 

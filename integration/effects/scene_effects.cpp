@@ -36,14 +36,14 @@ struct Need {
 };
 
 constexpr std::array kNeeds{
-    Need{Effect::terrain, Effect::motion, "puts on the ground what has moved"},
-    Need{Effect::response, Effect::pairs, "is the answer to pairs"},
-    Need{Effect::response, Effect::motion, "changes the velocities of what moves"},
-    Need{Effect::sweep, Effect::pairs, "finds pairs on the way of fast bodies"},
-    Need{Effect::sweep, Effect::motion, "follows bodies that move"},
-    Need{Effect::sleeping, Effect::motion, "stops bodies that move"},
-    Need{Effect::rotation, Effect::motion, "turns bodies that move"},
-    Need{Effect::friction, Effect::response, "acts between bodies that bounce off each other"},
+    Need{Effect::terrain, Effect::motion, "it puts moved bodies on the ground"},
+    Need{Effect::response, Effect::pairs, "it acts on pairs"},
+    Need{Effect::response, Effect::motion, "it changes the velocities of bodies"},
+    Need{Effect::sweep, Effect::pairs, "it finds pairs on the paths of fast bodies"},
+    Need{Effect::sweep, Effect::motion, "it follows moving bodies"},
+    Need{Effect::sleeping, Effect::motion, "it stops moving bodies"},
+    Need{Effect::rotation, Effect::motion, "it turns moving bodies"},
+    Need{Effect::friction, Effect::response, "it acts between bodies that bounce off each other"},
 };
 
 std::string missingNeed(EffectSet declared) {
@@ -51,8 +51,8 @@ std::string missingNeed(EffectSet declared) {
         if (declared.contains(need.effect) && !declared.contains(need.needed)) {
             std::ostringstream sentence;
             sentence << nameOf(need.effect) << " is declared without " << nameOf(need.needed)
-                     << ", but " << need.why << ": declare " << nameOf(need.needed)
-                     << " as well, or leave out " << nameOf(need.effect) << '.';
+                     << ", but " << need.why << ". Declare " << nameOf(need.needed)
+                     << " too, or leave out " << nameOf(need.effect) << '.';
             return sentence.str();
         }
     }
@@ -81,8 +81,9 @@ public:
         requireFrames(effect + ".farFrames", frames);
         if (error_.empty() && frames > 1 && !(interestRadius < kInfinity)) {
             std::ostringstream sentence;
-            sentence << effect << ".farFrames is " << frames << ", but nothing is far: set "
-                     << effect << ".interestRadius as well [m].";
+            sentence << effect << ".farFrames is " << frames
+                     << ", but no distance counts as far. Set " << effect
+                     << ".interestRadius too [m].";
             error_ = sentence.str();
         }
     }
@@ -99,8 +100,8 @@ void requireBounds(const Aabb<double>& bounds, Settings& settings) {
     for (int axis = 0; axis < 3; ++axis) {
         const double low = bounds.min()[axis];
         const double high = bounds.max()[axis];
-        settings.require(low <= high, "motion.bounds", low,
-                         "a box whose lower corner is not above its upper one");
+        settings.require(low <= high, "motion.bounds: the lower corner", low,
+                         "not above the upper one [m]");
         settings.require(low <= kMostEffectLength, "motion.bounds: the lower corner", low,
                          "at most 1e30 [m]");
         settings.require(high >= -kMostEffectLength, "motion.bounds: the upper corner", high,
@@ -119,7 +120,7 @@ void requireOfMovers(const SceneEffects& effects, Settings& settings) {
     }
     if (effects.sweep) {
         settings.require(effects.sweep->mode != Sweep::none, "sweep.mode", "none",
-                         "automatic, box or line; not to sweep, leave out sweep");
+                         "automatic, box or line. To sweep nothing, leave out sweep");
         settings.requireNotNegative("sweep.fastFrom", effects.sweep->fastFrom, "diameters a frame");
     }
     if (effects.sleeping) {

@@ -22,7 +22,7 @@ std::string simulationError(const SceneEffects& effects) {
     for (const Effect effect : {Effect::rotation, Effect::friction}) {
         if (effects.set().contains(effect)) {
             return std::string(nameOf(effect)) +
-                   " is declared, but Bullet alone simulates it: declare it for a Bullet world, or "
+                   " is declared, but only Bullet simulates it. Declare it for a Bullet world, or "
                    "leave it out.";
         }
     }
@@ -237,7 +237,9 @@ bool Simulation<Scalar>::contains(BodyId id) const noexcept {
 
 template <class Scalar>
 std::size_t Simulation<Scalar>::indexOf(BodyId id) const {
-    constexpr const char* kSentence = "Only a body that was not removed can be asked about.";
+    constexpr const char* kSentence =
+        "Simulation: the id is null or stale. Pass an id that add() returned and that was not "
+        "removed.";
     HASHPHASE_ASSERT(contains(id), kSentence);
     if (!contains(id)) {
         detail::raiseOutOfRange(kSentence);

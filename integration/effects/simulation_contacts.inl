@@ -243,7 +243,8 @@ bool Simulation<Scalar>::collide(BodyId first, BodyId second, double restitution
     demand(Effect::motion, "collide()");
     const std::size_t a = indexOf(std::min(first, second));
     const std::size_t b = indexOf(std::max(first, second));
-    HASHPHASE_ASSERT(a != b, "A body collides with another one.");
+    HASHPHASE_ASSERT(
+        a != b, "Simulation::collide(): both ids are of the same body. Pass two different bodies.");
     const Point apart = positions_[b] - positions_[a];
     const Scalar reach = radii_[a] + radii_[b];
     return (effectsOf_[a] & effectsOf_[b]).contains(Effect::response) &&

@@ -17,7 +17,8 @@ namespace hashphase {
 template <class Scalar>
 const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor parallelFor) {
     HASHPHASE_ASSERT(seconds >= 0 && std::isfinite(seconds),
-                     "A time step is finite and not negative [s].");
+                     "Simulation::advance(): the time step is negative, NaN or infinite. Pass a "
+                     "finite one of 0 s or more.");
     if (pairing_ && pairing_->isSpent) {
         pairing_ = nullptr;
         stockIsStale_ = true;

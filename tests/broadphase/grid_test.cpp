@@ -246,7 +246,7 @@ void expectRefused(const GridConfig& config, const std::string& field, const std
 TEST(GridConfig, IsRefusedWithASentenceWhereANumberIsOutOfItsRange) {
     for (const double bad : {-1.0, -1e-40, 9e-31, 1.1e30, kInfinity, -kInfinity, kNan}) {
         expectRefused({.cellSize = bad}, "cellSize",
-                      "0 (choose automatically) or between 1e-30 and 1e30");
+                      "0 (choose automatically) or between 1e-30 and 1e30 [m]");
     }
     for (const double bad : {0.0, 1.0, 1.999, 64.1, -4.0, kInfinity, kNan}) {
         expectRefused({.levelRatio = bad}, "levelRatio", "between 2 and 64");
@@ -256,7 +256,7 @@ TEST(GridConfig, IsRefusedWithASentenceWhereANumberIsOutOfItsRange) {
     }
     for (const double bad : {-1e-9, 1.1e30, kInfinity, kNan}) {
         expectRefused({.slack = bad}, "slack",
-                      "empty (follow each proxy's motion) or between 0 and 1e30");
+                      "empty (follow each proxy's motion) or between 0 and 1e30 [m]");
     }
     std::vector<GridConfig> accepted{
         {}, {.updatesBeforeRest = 1}, {.updatesBeforeRest = 1'000'000}};

@@ -223,20 +223,20 @@ TEST(EffectsFileFaults, NameANumberOutOfItsRange) {
 TEST(EffectsFileFaults, NameTheLineOfAContradiction) {
     expectFaults({
         {"{\"effects\": {\n  \"terrain\":\n true}}",
-         ":2: effects.terrain is declared without motion, but puts on the ground what has moved: "
-         "declare motion as well, or leave out terrain."},
+         ":2: effects.terrain is declared without motion, but it puts moved bodies on the ground. "
+         "Declare motion too, or leave out terrain."},
         {"{\"effects\": {\"motion\": {\n\"bounds\": {\"min\": [5, 0, 0],\n\"max\": [1, 1, 1]}}}}",
-         ":2: effects.motion.bounds is 5, but must be a box whose lower corner is not above its "
-         "upper one."},
-        {"{\"effects\": {\n\"zones\": {\n\"farFrames\": 2}}}",
-         ":3: effects.zones.farFrames is 2, but nothing is far: set zones.interestRadius as well "
+         ":2: effects.motion.bounds: the lower corner is 5, but must be not above the upper one "
          "[m]."},
+        {"{\"effects\": {\n\"zones\": {\n\"farFrames\": 2}}}",
+         ":3: effects.zones.farFrames is 2, but no distance counts as far. Set "
+         "zones.interestRadius too [m]."},
         {"{\"effects\": {\n\"radar\": {\"columns\": 100000, \"rows\": 100000}}}",
          ":2: effects.radar: columns * rows * groupCount is 1e+10, but must be from 1 to "
          "268435456."},
         {"{\"grid\": {\n\"cellSize\": 1e-31}}",
          ":2: grid.cellSize is 1e-31, but must be 0 (choose automatically) or between 1e-30 and "
-         "1e30."},
+         "1e30 [m]."},
         {"{\"scene\": {\n\"radius\": 300}}",
          ":2: scene.radius is 300, but a body must fit into scene.domain, which is 400 [m]."},
         {"{\"scene\": {\n\"domain\": 1}}",

@@ -112,7 +112,7 @@ TEST(EffectsCommand, RefusesWhatItCannotRun) {
         folder.write("turning.json", R"({"effects": {"motion": true, "rotation": true}})");
     const Typed turning = runEffectsCommand({"--file", path});
     EXPECT_EQ(turning.exitCode, kExitUsage);
-    EXPECT_TRUE(has(turning.err, "Bullet alone simulates it")) << turning.err;
+    EXPECT_TRUE(has(turning.err, "only Bullet simulates it")) << turning.err;
 }
 
 TEST(EffectPrices, RunTheSceneWithAndWithoutEachEffect) {

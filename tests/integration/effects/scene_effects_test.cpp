@@ -88,14 +88,14 @@ TEST(SceneEffects, NamesWhatContradictsItself) {
         return effectsError(effects);
     };
     EXPECT_EQ(errorWithout(Effect::motion),
-              "terrain is declared without motion, but puts on the ground what has moved: declare "
-              "motion as well, or leave out terrain.");
+              "terrain is declared without motion, but it puts moved bodies on the ground. Declare "
+              "motion too, or leave out terrain.");
     EXPECT_EQ(errorWithout(Effect::pairs),
-              "response is declared without pairs, but is the answer to pairs: declare pairs as "
-              "well, or leave out response.");
+              "response is declared without pairs, but it acts on pairs. Declare pairs too, or "
+              "leave out response.");
     EXPECT_EQ(errorWithout(Effect::response),
-              "friction is declared without response, but acts between bodies that bounce off each "
-              "other: declare response as well, or leave out friction.");
+              "friction is declared without response, but it acts between bodies that bounce off "
+              "each other. Declare response too, or leave out friction.");
     for (const Effect effect : {Effect::terrain, Effect::sweep, Effect::sleeping, Effect::rotation,
                                 Effect::friction, Effect::picking, Effect::boxSelection,
                                 Effect::culling, Effect::proximity, Effect::zones, Effect::radar}) {
@@ -114,13 +114,13 @@ TEST(SceneEffects, NamesTheSettingThatIsWrong) {
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.response->restitution = 1.5; }),
               "response.restitution is 1.5, but must be between 0 and 1.");
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.sweep->mode = Sweep::none; }),
-              "sweep.mode is none, but must be automatic, box or line; not to sweep, leave out "
+              "sweep.mode is none, but must be automatic, box or line. To sweep nothing, leave out "
               "sweep.");
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.sweep->fastFrom = kNan; }),
               "sweep.fastFrom is nan, but must be 0 or more diameters a frame.");
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.proximity->farFrames = 4; }),
-              "proximity.farFrames is 4, but nothing is far: set proximity.interestRadius as well "
-              "[m].");
+              "proximity.farFrames is 4, but no distance counts as far. Set "
+              "proximity.interestRadius too [m].");
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.proximity->turns = 0; }),
               "proximity.turns is 0, but must be from 1 to 1000000.");
     EXPECT_EQ(errorAfter([](SceneEffects& e) { e.proximity->colourCount = 33; }),

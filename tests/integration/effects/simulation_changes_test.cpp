@@ -136,14 +136,14 @@ TEST(SimulationMisuse, NamesWhatIsToBeDeclared) {
     std::vector<ProxyId> selected;
     EXPECT_EQ(
         undeclared([&] { static_cast<void>(simulation.velocity(body)); }),
-        "velocity() needs motion, which the scene does not declare: set SceneEffects::motion.");
+        "velocity() needs motion, which the scene does not declare. Set SceneEffects::motion.");
     EXPECT_EQ(undeclared([&] {
                   static_cast<void>(simulation.pick({{0, 0, 0}, {1, 1, 1}}));
               }),
-              "pick() needs picking, which the scene does not declare: set SceneEffects::picking.");
+              "pick() needs picking, which the scene does not declare. Set SceneEffects::picking.");
     EXPECT_EQ(undeclared([&] { static_cast<void>(simulation.grid()); }),
-              "grid() needs one of these, of which the scene declares none: pairs, picking, "
-              "boxSelection, culling, proximity, zones, radar.");
+              "grid() needs one of these effects, but the scene declares none. Set one in "
+              "SceneEffects: pairs, picking, boxSelection, culling, proximity, zones, radar.");
     const Observers<float>& observers = simulation.observers();
     const std::vector<std::function<void()>> others{
         [&] {
@@ -173,7 +173,7 @@ TEST(SimulationMisuse, LeavesToBulletWhatIsBullets) {
         ADD_FAILURE() << "nothing was thrown";
     } catch (const std::invalid_argument& error) {
         EXPECT_STREQ(error.what(),
-                     "rotation is declared, but Bullet alone simulates it: declare it for a Bullet "
+                     "rotation is declared, but only Bullet simulates it. Declare it for a Bullet "
                      "world, or leave it out.");
     }
 }
