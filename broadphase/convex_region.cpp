@@ -29,7 +29,9 @@ PlaneOfDoubles normalised(const Plane& plane) {
 template <class Scalar>
 ConvexRegion<Scalar>::ConvexRegion(std::span<const detail::Plane<Scalar>> planes,
                                    Containment containment, Touch touch) {
-    HASHPHASE_ASSERT(planes.size() <= kMostPlanes, "A convex region has at most 16 planes.");
+    HASHPHASE_ASSERT(
+        planes.size() <= kMostPlanes,
+        "ConvexRegion: more than 16 planes were given. Pass at most 16 planes (kMostPlanes).");
     constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
     detail::Polyhedron::Planes all;
     for (const OwnPlane& plane : planes.first(std::min(planes.size(), kMostPlanes))) {

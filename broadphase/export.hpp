@@ -15,7 +15,7 @@
 
 // Every public header includes this one first, before code that older standards reject.
 #if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L
-#error "hashphase needs C++20: -std=c++20, /std:c++20, or target_compile_features(... cxx_std_20)."
+#error "hashphase needs C++20. Compile with -std=c++20 or /std:c++20, or ask CMake for cxx_std_20."
 #endif
 
 // Unset macros become 0, so that every #if tests a defined macro.

@@ -14,8 +14,12 @@ Grid<Scalar>::Grid(const GridConfig& config) : store_(config) {}
 
 template <class Scalar>
 Grid<Scalar>::~Grid() {
-    HASHPHASE_ASSERT(!store_.hasPairs, "A grid outlives its Pairs.");
-    HASHPHASE_ASSERT(store_.firstMotions == nullptr, "A grid outlives its Sweeps.");
+    HASHPHASE_ASSERT(!store_.hasPairs,
+                     "Grid: the grid was destroyed before its Pairs. Destroy the Pairs first: "
+                     "declare them after the grid.");
+    HASHPHASE_ASSERT(store_.firstMotions == nullptr,
+                     "Grid: the grid was destroyed before its Sweeps. Destroy the Sweeps first: "
+                     "declare them after the grid.");
 }
 
 // --- Proxies -------------------------------------------------------------------------------------
@@ -34,7 +38,9 @@ void Grid<Scalar>::reserve(std::size_t count) {
 
 template <class Scalar>
 void Grid<Scalar>::move(std::span<const ProxyId> ids, std::span<const Box> boxes) {
-    HASHPHASE_ASSERT(ids.size() == boxes.size(), "There is exactly one box a proxy.");
+    HASHPHASE_ASSERT(
+        ids.size() == boxes.size(),
+        "Grid::move(): ids and boxes have different lengths. Pass one box for each id.");
     for (std::size_t i = 0; i < ids.size(); ++i) {
         move(ids[i], boxes[i]);
     }
@@ -43,11 +49,14 @@ void Grid<Scalar>::move(std::span<const ProxyId> ids, std::span<const Box> boxes
 template <class Scalar>
 void Grid<Scalar>::move(std::span<const ProxyId> ids, std::span<const Box> boxes,
                         ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(ids.size() == boxes.size(), "There is exactly one box a proxy.");
+    HASHPHASE_ASSERT(
+        ids.size() == boxes.size(),
+        "Grid::move(): ids and boxes have different lengths. Pass one box for each id.");
     HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);
     for ([[maybe_unused]] const ProxyId id : ids) {
         HASHPHASE_ASSERT(contains(id),
-                         "Only a proxy of this grid that was not removed can be moved.");
+                         "Grid::move(): the id is null, stale, or of another grid. Pass an id that "
+                         "add() returned and that was not removed.");
     }
     const auto isThere = [&](std::size_t i) { return contains(ids[i]); };
     const auto indexOf = [&](std::size_t i) {
@@ -65,7 +74,8 @@ void Grid<Scalar>::move(std::span<const ProxyId> ids, std::span<const Box> boxes
 template <class Scalar>
 void Grid<Scalar>::remove(ProxyId id) {
     HASHPHASE_ASSERT(contains(id),
-                     "Only a proxy of this grid that was not removed can be removed.");
+                     "Grid::remove(): the id is null, stale, or of another grid. Pass an id that "
+                     "add() returned and that was not removed.");
     HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);
     if (contains(id)) {
         store_.remove(id.index);
@@ -74,8 +84,12 @@ void Grid<Scalar>::remove(ProxyId id) {
 
 template <class Scalar>
 void Grid<Scalar>::clear() {
-    HASHPHASE_ASSERT(!store_.hasPairs, "Where there are Pairs, Pairs::clear() clears the grid.");
-    HASHPHASE_ASSERT(!isWithinQuery(), "A grid is not cleared within a query.");
+    HASHPHASE_ASSERT(!store_.hasPairs,
+                     "Grid::clear() was called for a grid that has Pairs. Call Pairs::clear() "
+                     "instead: it clears the grid too.");
+    HASHPHASE_ASSERT(
+        !isWithinQuery(),
+        "Grid::clear() was called from within a query. Call it after the query returns.");
     if (!store_.hasPairs && !isWithinQuery()) {
         store_.clear();
     }
@@ -83,7 +97,9 @@ void Grid<Scalar>::clear() {
 
 template <class Scalar>
 void Grid<Scalar>::setGroups(ProxyId id, const ProxyGroups& groups) {
-    HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has groups.");
+    HASHPHASE_ASSERT(contains(id),
+                     "Grid::setGroups(): the id is null, stale, or of another grid. Pass an id "
+                     "that add() returned and that was not removed.");
     HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);
     if (contains(id) && groups != store_.proxies.groupsNow(id.index)) {
         store_.setGroups(id.index, groups);
@@ -92,20 +108,28 @@ void Grid<Scalar>::setGroups(ProxyId id, const ProxyGroups& groups) {
 
 template <class Scalar>
 ProxyGroups Grid<Scalar>::groups(ProxyId id) const {
-    HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has groups.");
+    HASHPHASE_ASSERT(contains(id),
+                     "Grid::groups(): the id is null, stale, or of another grid. Pass an id that "
+                     "add() returned and that was not removed.");
     return contains(id) ? store_.proxies.groupsNow(id.index) : ProxyGroups{};
 }
 
 template <class Scalar>
 std::size_t Grid<Scalar>::shiftOrigin(const Point& shift) {
-    HASHPHASE_ASSERT(shift.allFinite(), "The origin is shifted by what is finite.");
-    HASHPHASE_ASSERT(!isWithinQuery(), "The origin is not shifted within a query.");
+    HASHPHASE_ASSERT(
+        shift.allFinite(),
+        "Grid::shiftOrigin(): the shift is NaN or infinite. Pass finite coordinates [m].");
+    HASHPHASE_ASSERT(
+        !isWithinQuery(),
+        "Grid::shiftOrigin() was called from within a query. Call it after the query returns.");
     return shift.allFinite() && !shift.isZero(0) ? store_.shiftOrigin(shift) : 0;
 }
 
 template <class Scalar>
 const Aabb<Scalar>& Grid<Scalar>::box(ProxyId id) const {
-    HASHPHASE_ASSERT(contains(id), "Only a proxy of this grid that was not removed has a box.");
+    HASHPHASE_ASSERT(contains(id),
+                     "Grid::box(): the id is null, stale, or of another grid. Pass an id that "
+                     "add() returned and that was not removed.");
     return contains(id) ? store_.proxies.records[id.index].box : store_.proxies.nowhere();
 }
 
@@ -113,7 +137,8 @@ const Aabb<Scalar>& Grid<Scalar>::box(ProxyId id) const {
 
 template <class Scalar>
 std::array<std::int64_t, 3> Grid<Scalar>::cellAt(const Point& point) const {
-    HASHPHASE_ASSERT(point.allFinite(), "Only a finite point lies in a cell.");
+    HASHPHASE_ASSERT(point.allFinite(),
+                     "Grid::cellAt(): the point is NaN or infinite. Pass finite coordinates [m].");
     std::array<std::int64_t, 3> cell{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double scaled = std::floor(static_cast<double>(point[static_cast<int>(axis)]) /
@@ -134,8 +159,12 @@ CellRange Grid<Scalar>::cellsOf(ProxyId id) const {
 
 template <class Scalar>
 UpdateCost Grid<Scalar>::update(ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(!store_.hasPairs, "Where there are Pairs, Pairs::update() ends the frame.");
-    HASHPHASE_ASSERT(!isWithinQuery(), "An update is not begun within a query.");
+    HASHPHASE_ASSERT(!store_.hasPairs,
+                     "Grid::update() was called for a grid that has Pairs. Call Pairs::update() "
+                     "instead: it updates the grid too.");
+    HASHPHASE_ASSERT(
+        !isWithinQuery(),
+        "Grid::update() was called from within a query. Call it after the query returns.");
     if (store_.hasPairs || isWithinQuery()) {
         return {};
     }
@@ -158,13 +187,17 @@ std::size_t Grid<Scalar>::rayMemoryBytes() const noexcept {
 
 template <class Scalar>
 void Grid<Scalar>::releaseRayMemory() noexcept {
-    HASHPHASE_ASSERT(!isWithinQuery(), "What rays read is not freed within a query.");
+    HASHPHASE_ASSERT(!isWithinQuery(),
+                     "Grid::releaseRayMemory() was called from within a query. Call it after the "
+                     "query returns.");
     store_.releaseRayMemory();
 }
 
 template <class Scalar>
 void Grid<Scalar>::releaseUnusedMemory() noexcept {
-    HASHPHASE_ASSERT(!isWithinQuery(), "Memory is not given back within a query.");
+    HASHPHASE_ASSERT(!isWithinQuery(),
+                     "Grid::releaseUnusedMemory() was called from within a query. Call it after "
+                     "the query returns.");
     store_.proxies.reservedCount = 0;
     store_.releaseMemory();
 }

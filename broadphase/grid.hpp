@@ -85,7 +85,8 @@ public:
     /// Sets the proxy's box. A box with the same bits as before costs one comparison. Cost: O(1) amortised.
     [[HASHPHASE_ALWAYS_INLINE]] void move(ProxyId id, const Box& box) {
         HASHPHASE_ASSERT(contains(id),
-                         "Only a proxy of this grid that was not removed can be moved.");
+                         "Grid::move(): the id is null, stale, or of another grid. Pass an id that "
+                         "add() returned and that was not removed.");
         HASHPHASE_ASSERT(takesChanges(), detail::kMustNotChange);
         if (contains(id)) {
             store_.move(id.index, box);

@@ -14,7 +14,8 @@ namespace hashphase {
 namespace {
 
 [[maybe_unused]] constexpr const char* kMustNotAsk =
-    "Pairs are neither found nor filtered again from within the filter.";
+    "Pairs were found, filtered or ignored from within a filter, visitEach() or the query of a "
+    "convex volume. Do so after that returns.";
 
 template <class Scalar>
 detail::Sweeping<Scalar>* sweepingOf(Sweeps<Scalar>* sweeps) {
@@ -31,14 +32,19 @@ template <class Scalar>
 template <class Scalar>
 Pairs<Scalar>::Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps)
     : grid_(grid), sweeps_(sweeps), state_(grid.store(), sweepingOf(sweeps)) {
-    HASHPHASE_ASSERT(areOf(grid, sweeps), "Sweeps and Pairs are of the same grid.");
+    HASHPHASE_ASSERT(
+        areOf(grid, sweeps),
+        "Pairs: the Sweeps are of another grid. Pass Sweeps of the grid of these Pairs.");
 }
 
 template <class Scalar>
 void Pairs<Scalar>::setSweeps(Sweeps<Scalar>* sweeps) {
-    HASHPHASE_ASSERT(areOf(grid_, sweeps), "Sweeps and Pairs are of the same grid.");
+    HASHPHASE_ASSERT(areOf(grid_, sweeps),
+                     "Pairs::setSweeps(): the Sweeps are of another grid. Pass Sweeps of the grid "
+                     "of these Pairs.");
     HASHPHASE_ASSERT(!grid_.isWithinQuery(),
-                     "Sweeps are not given within a query, or within the filter.");
+                     "Pairs::setSweeps() was called from within a query or the filter. Call it "
+                     "after that returns.");
     sweeps_ = sweeps;
     state_.setSweeping(sweepingOf(sweeps));
 }
@@ -46,7 +52,8 @@ void Pairs<Scalar>::setSweeps(Sweeps<Scalar>* sweeps) {
 template <class Scalar>
 PairChanges Pairs<Scalar>::update(PairFilter filter, ParallelFor parallelFor) & {
     HASHPHASE_ASSERT(!grid_.isWithinQuery(),
-                     "An update is not begun within a query, or within the filter.");
+                     "Pairs::update() was called from within a query or the filter. Call it after "
+                     "that returns.");
     detail::step(grid_.store(), &state_, filter, parallelFor, state_.cost.grid);
     return detail::endUpdate(state_, parallelFor);
 }
@@ -61,7 +68,9 @@ bool Pairs<Scalar>::isUpToDate() const noexcept {
 
 template <class Scalar>
 PairChanges Pairs<Scalar>::findPairsNow(ProxyId id, PairFilter filter) & {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid has pairs to find.");
+    HASHPHASE_ASSERT(grid_.contains(id),
+                     "Pairs::findPairsNow(): the id is null, stale, or of another grid. Pass an id "
+                     "that Grid::add() returned and that was not removed.");
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
     return grid_.contains(id) ? detail::findPairsNow(state_, id.index, filter) : PairChanges{};
 }
@@ -69,7 +78,9 @@ PairChanges Pairs<Scalar>::findPairsNow(ProxyId id, PairFilter filter) & {
 template <class Scalar>
 PairChanges Pairs<Scalar>::findPairsNow(ProxyId id, std::span<const ProxyId> others,
                                         PairFilter filter) & {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid has pairs to find.");
+    HASHPHASE_ASSERT(grid_.contains(id),
+                     "Pairs::findPairsNow(): the id is null, stale, or of another grid. Pass an id "
+                     "that Grid::add() returned and that was not removed.");
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
     return grid_.contains(id) ? detail::findPairsNow(state_, id.index, others, filter)
                               : PairChanges{};
@@ -83,7 +94,9 @@ PairChanges Pairs<Scalar>::refilter(ProxyId id, PairFilter filter) & {
 template <class Scalar>
 PairChanges Pairs<Scalar>::refilter(std::span<const ProxyId> ids, PairFilter filter) & {
     for ([[maybe_unused]] const ProxyId id : ids) {
-        HASHPHASE_ASSERT(grid_.contains(id), "Only a proxy of the grid can be filtered again.");
+        HASHPHASE_ASSERT(grid_.contains(id),
+                         "Pairs::refilter(): the id is null, stale, or of another grid. Pass an id "
+                         "that Grid::add() returned and that was not removed.");
     }
     HASHPHASE_ASSERT(grid_.takesChanges(), kMustNotAsk);
     return detail::refilter(state_, ids, filter);
@@ -105,7 +118,8 @@ template <class Scalar>
 PairChanges Pairs<Scalar>::ignore(const ProxyPair& pair) & {
     HASHPHASE_ASSERT(
         grid_.contains(pair.first) && grid_.contains(pair.second) && pair.first != pair.second,
-        "Only two proxies of the grid are ignored as a pair.");
+        "Pairs::ignore(): the pair is not of two different proxies of the grid. Pass two ids that "
+        "Grid::add() returned and that were not removed.");
     return ignore(std::span(&pair, 1));
 }
 
@@ -129,8 +143,9 @@ PairChanges Pairs<Scalar>::stopIgnoring(std::span<const ProxyPair> pairs, PairFi
 // Made again in place, so that nothing is left of what was, and nothing takes memory.
 template <class Scalar>
 void Pairs<Scalar>::clear() {
-    HASHPHASE_ASSERT(!grid_.isWithinQuery(),
-                     "Pairs and their grid are not cleared within a query, or within the filter.");
+    HASHPHASE_ASSERT(
+        !grid_.isWithinQuery(),
+        "Pairs::clear() was called from within a query or the filter. Call it after that returns.");
     std::destroy_at(&state_);
     grid_.clear();
     if (sweeps_ != nullptr) {
@@ -148,7 +163,8 @@ bool Pairs<Scalar>::isPair(const ProxyPair& pair) const noexcept {
 template <class Scalar>
 void Pairs<Scalar>::collect(std::vector<ProxyPair>& pairs) const {
     HASHPHASE_ASSERT(grid_.store().cost.changed == 0,
-                     "The set of pairs is asked for directly after an update.");
+                     "Pairs::collect() was called after a change of the grid. Call it after "
+                     "update(), before the next change.");
     detail::collect(state_, pairs);
 }
 
@@ -174,7 +190,9 @@ std::size_t Pairs<Scalar>::memoryBytes() const noexcept {
 
 template <class Scalar>
 void Pairs<Scalar>::releaseUnusedMemory() noexcept {
-    HASHPHASE_ASSERT(grid_.takesChanges(), "Memory is not given back within the filter.");
+    HASHPHASE_ASSERT(grid_.takesChanges(),
+                     "Pairs::releaseUnusedMemory() was called from within a query or the filter. "
+                     "Call it after that returns.");
     detail::releaseUnusedMemory(state_);
 }
 

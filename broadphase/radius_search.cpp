@@ -27,7 +27,7 @@ constexpr std::size_t kAhead = 12;          // agents to be read that are fetche
 constexpr std::uint32_t kNoCell = ~std::uint32_t{0};
 
 [[maybe_unused]] constexpr const char* kIsAsked =
-    "A radius search neither takes nor answers from within its own filters and visitors.";
+    "RadiusSearch was called from within its own filter or visitor. Call it after that returns.";
 
 // What kernels write beyond the candidates, and beyond the last neighbour.
 constexpr std::size_t kTilePadding = 64 + detail::kColumnPadding;
@@ -329,7 +329,9 @@ QueryCost RadiusSearch<Scalar>::list(const detail::RadiusVisitor& visitor,
 
 template <class Scalar>
 QueryCost RadiusSearch<Scalar>::count(std::span<std::uint32_t> counts, ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(counts.size() == size(), "There is one count for each agent.");
+    HASHPHASE_ASSERT(counts.size() == size(),
+                     "RadiusSearch::count(): counts has the wrong length. Pass one count for each "
+                     "agent: size() of them.");
     return ask(parallelFor, [&](std::uint32_t first, std::uint32_t last, auto& tile, auto& cost) {
         return detail::kernels<Scalar>().countWithin(view_, first, last, tile, counts.data(), cost);
     });
@@ -340,9 +342,12 @@ QueryCost RadiusSearch<Scalar>::countGroups(std::uint32_t groupCount,
                                             FunctionRef<std::uint32_t(ProxyId)> groupOf,
                                             std::span<std::uint32_t> counts,
                                             ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(groupCount <= kMostGroups, "There are at most kMostGroups groups.");
+    HASHPHASE_ASSERT(
+        groupCount <= kMostGroups,
+        "RadiusSearch::countGroups(): groupCount is too large. Pass at most kMostGroups.");
     HASHPHASE_ASSERT(counts.size() == std::size_t{size()} * groupCount,
-                     "There is one count for each agent and group.");
+                     "RadiusSearch::countGroups(): counts has the wrong length. Pass size() * "
+                     "groupCount of them.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
     groups_.resize(size() + detail::kColumnPadding);
     parallelFor(size(), kAgentGrain, [&](std::size_t begin, std::size_t end) {

@@ -70,12 +70,15 @@ public:
 
     /// Returns the proxy of an agent, or its position [m]; ids() returns all ids by agent. Asserted: agent < size().
     [[nodiscard]] ProxyId id(std::uint32_t agent) const {
-        HASHPHASE_ASSERT(agent < size(), "Agents have numbers below size().");
+        HASHPHASE_ASSERT(agent < size(),
+                         "RadiusSearch::id(): there is no such agent. Pass a number below size().");
         return ids_[agent];
     }
     [[nodiscard]] std::span<const ProxyId> ids() const noexcept { return ids_; }
     [[nodiscard]] Point position(std::uint32_t agent) const {
-        HASHPHASE_ASSERT(agent < size(), "Agents have numbers below size().");
+        HASHPHASE_ASSERT(
+            agent < size(),
+            "RadiusSearch::position(): there is no such agent. Pass a number below size().");
         return {columns_[0][agent], columns_[1][agent], columns_[2][agent]};
     }
 

@@ -20,7 +20,9 @@ void Sweeps<Scalar>::set(ProxyId id, const MovingBox<Scalar>& way, Sweep sweep) 
 
 template <class Scalar>
 void Sweeps<Scalar>::set(const Motion& motion) {
-    HASHPHASE_ASSERT(grid_.contains(motion.id), "Only a proxy of the grid can sweep.");
+    HASHPHASE_ASSERT(grid_.contains(motion.id),
+                     "Sweeps::set(): the id is null, stale, or of another grid. Pass an id that "
+                     "Grid::add() returned and that was not removed.");
     HASHPHASE_ASSERT(grid_.takesChanges(), detail::kMustNotChange);
     if (!grid_.contains(motion.id)) {
         return;
@@ -30,8 +32,8 @@ void Sweeps<Scalar>::set(const Motion& motion) {
     if (!isUsable && !reportedBadData_) {
         reportedBadData_ = true;
         detail::reportMessage(
-            "A proxy was to sweep by a displacement that is NaN or infinite. It counts as "
-            "standing; further ones do so silently.");
+            "Sweeps::set(): a displacement is NaN or infinite, so its proxy does not sweep. Set a "
+            "finite one. Later cases are not reported.");
     }
     if (!isUsable || motion.sweep == Sweep::none || displacement.isZero(0)) {
         sweeping_.motions.end(motion.id.index);
@@ -58,7 +60,9 @@ std::size_t Sweeps<Scalar>::memoryBytes() const noexcept {
 
 template <class Scalar>
 void Sweeps<Scalar>::releaseUnusedMemory() noexcept {
-    HASHPHASE_ASSERT(!grid_.isWithinQuery(), "Memory is not given back within a query.");
+    HASHPHASE_ASSERT(!grid_.isWithinQuery(),
+                     "Sweeps::releaseUnusedMemory() was called from within a query. Call it after "
+                     "the query returns.");
     sweeping_.releaseUnusedMemory();
 }
 

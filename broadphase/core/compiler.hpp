@@ -39,7 +39,7 @@
 // A float that is calculated with more bits (x87) is another one where it is stored, and a box would no longer
 // be filed where it is looked for.
 #if FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 2 || (defined(__i386__) && !defined(__SSE2_MATH__))
-#error "On 32-bit x86 hashphase needs -msse2 -mfpmath=sse: x87 rounds otherwise."
+#error "hashphase needs SSE2 on 32-bit x86: x87 rounds differently. Add -msse2 -mfpmath=sse."
 #endif
 
 #if defined(__clang__) || defined(__GNUC__)
@@ -129,7 +129,7 @@
 #endif
 #if (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
 #if defined(__clang__)  // takes even an infinity that a function returns for undefined
-#error "hashphase needs infinity and NaN: after -ffast-math, Clang needs -fno-finite-math-only."
+#error "hashphase needs infinity and NaN, which -ffast-math drops. Add -fno-finite-math-only."
 #endif
 #define HASHPHASE_OVERLOOKS_NAN 1
 #else

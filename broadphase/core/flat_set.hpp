@@ -329,7 +329,7 @@ private:
 
     // kNone is no key's number.
     static void checkSize(std::size_t count) {
-        checkCount(count, kNone, "A set holds at most 4,294,967,295 keys.");
+        checkCount(count, kNone, "A set holds at most 4,294,967,295 pairs or ids. Use fewer.");
     }
 
     static std::uint32_t lowest(std::uint32_t lanes) noexcept {

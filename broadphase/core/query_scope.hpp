@@ -7,7 +7,8 @@ namespace hashphase::detail {
 
 /// Must not be broken by who is called back.
 inline constexpr const char* kMustNotChange =
-    "A grid is not changed from within filters, visitEach() or the query of a convex volume.";
+    "A grid or broadphase was changed from within a filter, visitEach() or the query of a convex "
+    "volume. Change it after that returns.";
 
 /// Lives while a grid, or a client of one, calls somebody back on this thread, so that it can tell a
 /// call from within. Costs two writes to memory of the thread's own.

@@ -30,7 +30,8 @@ public:
     }
     // NOLINTNEXTLINE(readability-identifier-naming): named as std::vector's
     [[HASHPHASE_ALWAYS_INLINE]] void push_back(const Item& item) noexcept {
-        HASHPHASE_ASSERT(size_ < room_.size(), "There is room for the item.");
+        HASHPHASE_ASSERT(size_ < room_.size(),
+                         "RoomyList::push_back(): the list is full. Call reserve() first.");
         room_.data()[size_++] = item;
     }
     void clear() noexcept { size_ = 0; }

@@ -140,7 +140,9 @@ template <class Scalar>
 void Table<Scalar>::build(std::span<const std::uint32_t> boxIndices,
                           std::span<const PaddedBox<Scalar>> boxes, const LevelSizes& fixed,
                           ParallelFor parallelFor, const ProxyGroups* groups) {
-    HASHPHASE_ASSERT(boxIndices.size() == boxes.size(), "Every box has a proxyIndex.");
+    HASHPHASE_ASSERT(boxIndices.size() == boxes.size(),
+                     "Table::build(): boxIndices and boxes have different lengths. Pass one index "
+                     "for each box.");
     if (boxes.empty()) {
         clear();
         return;
@@ -249,7 +251,9 @@ void Table<Scalar>::settle() {
 template <class Scalar>
 void Table<Scalar>::refresh(std::uint32_t entry, const Scalar* corners,
                             std::size_t stride) noexcept {
-    HASHPHASE_ASSERT(!hasNan(box(entry)), "Only an entry that was not erased can be refreshed.");
+    HASHPHASE_ASSERT(
+        !hasNan(box(entry)),
+        "Table::refresh(): the entry was erased. Refresh only entries that are present.");
     const Scalar* const now = corners + stride * proxyIndices_[entry];
     for (std::size_t i = 0; i < bounds_.size(); ++i) {
         settled_->before[i][entry] = std::exchange(bounds_[i][entry], now[i]);

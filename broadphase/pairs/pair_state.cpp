@@ -8,7 +8,8 @@ namespace hashphase::detail {
 template <class Scalar>
 PairState<Scalar>::PairState(Store<Scalar>& itsStore, Sweeping<Scalar>* itsSweeping)
     : store(itsStore), sweeping(itsSweeping) {
-    HASHPHASE_ASSERT(!store.hasPairs, "A grid has at most one Pairs.");
+    HASHPHASE_ASSERT(!store.hasPairs,
+                     "Pairs: the grid already has Pairs. Use these, or destroy them first.");
     store.forgetLastUpdate();
     store.hasPairs = true;
 }

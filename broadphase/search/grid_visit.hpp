@@ -244,7 +244,9 @@ template <class Scalar>
 template <class Region, class Collector>
 QueryCost Grid<Scalar>::visitEach(std::span<const Region> regions, std::span<Collector> collectors,
                                   ParallelFor parallelFor) const {
-    HASHPHASE_ASSERT(regions.size() == collectors.size(), "Each region has a collector.");
+    HASHPHASE_ASSERT(regions.size() == collectors.size(),
+                     "Grid::visitEach(): regions and collectors have different lengths. Pass one "
+                     "collector for each region.");
     constexpr std::size_t grain = 256;
     // Boxes are looked for together.
     constexpr bool kHasBounds = requires(const Region& region) {

@@ -148,7 +148,9 @@ InstructionSet instructionSet() noexcept {
 
 void useInstructionSet(InstructionSet set) noexcept {
     const Implementation* const wanted = implementationOf(set);
-    HASHPHASE_ASSERT(wanted != nullptr, "Only an instruction set that is available can be used.");
+    HASHPHASE_ASSERT(wanted != nullptr,
+                     "useInstructionSet(): this build or processor does not have that set. Ask "
+                     "isAvailable() first.");
     chosen().store(wanted, std::memory_order_relaxed);
 }
 

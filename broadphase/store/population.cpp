@@ -20,7 +20,8 @@ std::size_t roomFor(std::size_t count, std::size_t present) {
 
 template <class Scalar>
 void Population<Scalar>::reserveRecords(std::size_t indexCount) {
-    checkCount(indexCount, kMostProxies, "A grid holds at most 268,435,456 proxies.");
+    checkCount(indexCount, kMostProxies,
+               "A grid holds at most 268,435,456 proxies. Remove some, or use another grid.");
     if (indexCount <= records.capacity()) {
         return;
     }

@@ -95,7 +95,8 @@ std::uint32_t Store<Scalar>::takeIndex() {
 
 template <class Scalar>
 void Store<Scalar>::reserve(std::size_t count) {
-    checkCount(count, kMostProxies, "A grid holds at most 268,435,456 proxies.");
+    checkCount(count, kMostProxies,
+               "A grid holds at most 268,435,456 proxies. Remove some, or use another grid.");
     const std::size_t removed = proxies.removed.count + proxies.removedImmediate.count;
     proxies.reserveRecords(count + removed);
     proxies.reserveLists(count + removed);
@@ -219,8 +220,9 @@ void Store<Scalar>::markNan(Record& record, bool isNan) {
     if (isNan && !proxies.nanReported) {
         proxies.nanReported = true;
         reportMessage(
-            "A box with a NaN coordinate was set. It will pair with nothing and be found by "
-            "nothing until a box without NaN is set; further ones are counted silently.");
+            "A proxy has a box with a NaN coordinate. No pair and no query finds it until it gets "
+            "a box without NaN. Grid::nanCount() counts such proxies; later ones are not "
+            "reported.");
     }
 }
 

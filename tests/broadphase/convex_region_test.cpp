@@ -197,7 +197,7 @@ TEST(FrustumRegion, IsThatOfTheWholeScreenUnlessARectangleIsGiven) {
 TEST(ConvexQueryDeathTest, AConvexRegionHasAtMost16Planes) {
     const std::vector<ConvexRegion<float>::Plane> planes(
         17, ConvexRegion<float>::Plane(Vector3<float>::UnitX(), 0.0F));
-    EXPECT_DEATH_IF_SUPPORTED(ConvexRegion<float>{planes}, "at most 16 planes");
+    EXPECT_DEATH_IF_SUPPORTED(ConvexRegion<float>{planes}, "Pass at most 16 planes");
 }
 #endif
 

@@ -226,8 +226,10 @@ void expectMostIsRefused(CaseRun<Scalar>& run) {
         } catch (const std::length_error& refused) {
             refusal = refused.what();
         }
-        run.expect(refusal == "A grid holds at most 268,435,456 proxies.",
-                   "more than there may be are refused in a sentence");
+        run.expect(
+            refusal ==
+                "A grid holds at most 268,435,456 proxies. Remove some, or use another grid.",
+            "more than there may be are refused in a sentence");
     }
     run.expect(grid.size() == 1 && grid.contains(id) && grid.validate().empty(),
                "the grid is as it was");
