@@ -39,9 +39,14 @@ bool canShift(btCollisionWorld& world, const SpatialHashBroadphase& broadphase,
     const bool isItsOwn = world.getBroadphase() == &broadphase;
     const bool isKnown = hasOnlyKnownCoordinates(world);
     const bool isFinite = toEigen(shift).allFinite();
-    HASHPHASE_ASSERT(isItsOwn, "A world is shifted together with its own broadphase.");
-    HASHPHASE_ASSERT(isKnown, "Worlds with soft bodies or multibodies cannot be shifted.");
-    HASHPHASE_ASSERT(isFinite, "The origin is shifted by what is finite.");
+    HASHPHASE_ASSERT(
+        isItsOwn,
+        "shiftWorldOrigin(): the world has another broadphase. Pass the broadphase of the world.");
+    HASHPHASE_ASSERT(isKnown,
+                     "shiftWorldOrigin(): the world has soft bodies or multibodies, which cannot "
+                     "be shifted. Remove them from the world first.");
+    HASHPHASE_ASSERT(
+        isFinite, "shiftWorldOrigin(): the shift is NaN or infinite. Pass finite coordinates [m].");
     return isItsOwn && isKnown && isFinite;
 }
 

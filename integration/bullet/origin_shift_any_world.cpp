@@ -43,8 +43,9 @@ bool shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase
         return shiftWorldOrigin(*dynamics, broadphase, shift);
     }
     const bool isKnown = !mayHaveJoints(world);
-    HASHPHASE_ASSERT(
-        isKnown, "A world with bodies that cannot tell its type is shifted as a btDynamicsWorld.");
+    HASHPHASE_ASSERT(isKnown,
+                     "shiftWorldOrigin(): the world has bodies, and its type is unknown without "
+                     "RTTI. Pass it as a btDynamicsWorld.");
     return isKnown && detail::shiftWorldWithoutJoints(world, broadphase, shift);
 }
 

@@ -100,12 +100,14 @@ btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadp
 
 void PairCache::checkMayChange() const {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
-                     "A pair cache is not changed from within its filter.");
+                     "A PairCache was changed from within its filter. Note the change, and make it "
+                     "after the step.");
 }
 
 void PairCache::checkRoomFor(std::size_t bornCount) const {
     detail::checkCount(ids_.size() + bornCount, kMostPairs,
-                       "A pair cache holds at most 1,073,741,824 pairs.");
+                       "A PairCache holds at most 1,073,741,824 pairs. Use fewer overlapping "
+                       "objects, or filter more pairs.");
 }
 
 btBroadphasePair* PairCache::add(const BulletProxyPair& proxies) {
@@ -114,7 +116,8 @@ btBroadphasePair* PairCache::add(const BulletProxyPair& proxies) {
     const auto index = static_cast<int>(ids_.findOrInsert(proxies.ids()));
     if (index < pairs_.size()) {
         HASHPHASE_ASSERT(isNamedBy(proxies, pairs_[index]),
-                         "Proxies that are alive have different unique ids.");
+                         "Two live proxies have the same m_uniqueId. Give each proxy of a "
+                         "PairCache an id of its own.");
         return &pairs_[index];
     }
     btBroadphasePair pair;

@@ -107,7 +107,8 @@ public:
     /// broadphases that reuse unique ids. Asserted: `key` is not null.
     explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId)
         : order_(order), key_(key) {
-        HASHPHASE_ASSERT(key != nullptr, "There is a key to order proxies by.");
+        HASHPHASE_ASSERT(key != nullptr,
+                         "PairCache: the key is null. Pass a function, or omit it.");
     }
 
     ~PairCache() override;
@@ -416,9 +417,9 @@ private:
 // Bullet's constructor for two proxies orients by unique id.
 inline void PairCache::name(const BulletProxyPair& proxies, btBroadphasePair& pair) const {
     HASHPHASE_ASSERT(proxies.ids() >> 32 != (proxies.ids() & kLowerHalf),
-                     "A pair is made of two proxies with different unique ids.");
+                     "PairCache: both proxies of a pair have one m_uniqueId. Use different ids.");
     HASHPHASE_ASSERT((proxies.ids() & 0x8000000080000000U) == 0,
-                     "The unique id of a proxy is not negative.");
+                     "PairCache: the m_uniqueId of a proxy is negative. Use 0 or more.");
     const bool isSwapped = key_ != &uniqueId && isLower(*proxies.upper(), *proxies.lower());
     pair.m_pProxy0 = isSwapped ? proxies.upper() : proxies.lower();
     pair.m_pProxy1 = isSwapped ? proxies.lower() : proxies.upper();

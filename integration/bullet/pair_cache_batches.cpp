@@ -159,7 +159,8 @@ void PairCache::takePlace(const BulletProxyPair& born, std::uint32_t& place, std
     btBroadphasePair& pair = pairs_[static_cast<int>(index)];
     if (index != place) {
         HASHPHASE_ASSERT(isNamedBy(born, pair),
-                         "Proxies that are alive have different unique ids.");
+                         "Two live proxies have the same m_uniqueId. Give each proxy of a "
+                         "PairCache an id of its own.");
         return;
     }
     name(born, pair);

@@ -53,9 +53,11 @@ inline namespace HASHPHASE_BULLET_NAMESPACE {
 /// passes all boxes to one SpatialHashBroadphase::setAabbs().
 template <class World>
 class ParallelAabbs : public World {
-    static_assert(std::is_base_of_v<btCollisionWorld, World>, "World is a world of Bullet.");
+    static_assert(std::is_base_of_v<btCollisionWorld, World>,
+                  "ParallelAabbs<World>: derive World from btCollisionWorld.");
     static_assert(!std::is_base_of_v<btSimpleDynamicsWorld, World>,
-                  "btSimpleDynamicsWorld has boxes of its own kind.");
+                  "ParallelAabbs<World>: btSimpleDynamicsWorld sets its boxes in its own way. Use "
+                  "btDiscreteDynamicsWorld.");
 
 public:
     using World::World;

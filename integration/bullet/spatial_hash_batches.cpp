@@ -42,7 +42,8 @@ void SpatialHashBroadphase::createProxies(std::span<const ProxyDefinition> defin
                                           std::span<btBroadphaseProxy*> proxies,
                                           btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(definitions.size() == proxies.size(),
-                     "There is room for exactly one proxy a definition.");
+                     "createProxies(): definitions and proxies have different lengths. Pass room "
+                     "for one proxy for each definition.");
     grid_.reserve(grid_.size() + definitions.size());
     proxies_.reserve(grid_.size() + definitions.size());
     detail::ensureCapacity(uniqueIds_, grid_.size() + definitions.size());
@@ -192,8 +193,9 @@ void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies
                                      std::span<const btVector3> aabbMins,
                                      std::span<const btVector3> aabbMaxs,
                                      btDispatcher* dispatcher) {
-    HASHPHASE_ASSERT(proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
-                     "There is exactly one box a proxy.");
+    HASHPHASE_ASSERT(
+        proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
+        "setAabbs(): proxies and boxes have different lengths. Pass one box for each proxy.");
     const bool mayCallBack = ghostCount() > 0 || config_.eagerGroups != 0;
     std::vector<int> ids;
     if (mayCallBack) {
@@ -225,15 +227,15 @@ void SpatialHashBroadphase::noteIds(std::span<btBroadphaseProxy* const> proxies,
                                     std::vector<int>& ids) {
     ids.clear();
     for (const btBroadphaseProxy* const proxy : proxies) {
-        HASHPHASE_ASSERT(proxy != nullptr, "Only a proxy has an id.");
+        HASHPHASE_ASSERT(proxy != nullptr,
+                         "A proxy is null. Pass proxies that createProxy() returned.");
         ids.push_back(proxy->m_uniqueId);
     }
 }
 
 void SpatialHashBroadphase::checkNamedOnce([[maybe_unused]] std::span<const int> ids) {
-    HASHPHASE_ASSERT(
-        areDifferent({ids.begin(), ids.end()}),
-        "Each proxy is named once: only one that this broadphase did not destroy yet.");
+    HASHPHASE_ASSERT(areDifferent({ids.begin(), ids.end()}),
+                     "destroyProxies(): a proxy is named twice. Name each proxy once.");
 }
 
 void SpatialHashBroadphase::destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
@@ -309,7 +311,8 @@ void SpatialHashBroadphase::removePairsOf(std::span<btBroadphaseProxy* const> pr
 
 std::size_t SpatialHashBroadphase::shiftOrigin(const btVector3& shift) {
     HASHPHASE_ASSERT(!isCalculating(),
-                     "The origin is not shifted by callbacks of calculateOverlappingPairs().");
+                     "shiftOrigin() was called from a callback of calculateOverlappingPairs(). "
+                     "Call it after the step.");
     const Vector3<btScalar> by = toEigen(shift);
     std::vector<std::uint32_t> few;  // of the proxies, where many more have gone
     if (8 * grid_.size() < uniqueIds_.size()) {

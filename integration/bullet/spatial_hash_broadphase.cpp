@@ -81,7 +81,8 @@ SpatialHashBroadphase::SpatialHashBroadphase(btOverlappingPairCache* pairCache,
     }
     groupsDecide_ = doGroupsDecide();
     HASHPHASE_ASSERT(pairCache_->getNumOverlappingPairs() == 0,
-                     "A pair cache has no pairs yet when it is given to a broadphase.");
+                     "SpatialHashBroadphase: the pair cache already has pairs. Pass an empty "
+                     "cache, which no other broadphase uses.");
 }
 
 SpatialHashBroadphase::~SpatialHashBroadphase() = default;
@@ -92,7 +93,8 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                                                       int collisionFilterMask,
                                                       btDispatcher* dispatcher) {
     detail::checkCount(static_cast<std::size_t>(*idCounter_) + 1, std::numeric_limits<int>::max(),
-                       "All unique ids are used up. Without proxies, resetPool() counts anew.");
+                       "createProxy(): all 2,147,483,647 unique ids are used up. Destroy all "
+                       "proxies, then call resetPool().");
     Proxy& proxy = place({aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask});
     const detail::OnFailure destroy([&] {
         // What a pair cache of the user's throws as well gives way to what has failed first.
@@ -226,7 +228,8 @@ void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
 
 void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(!isCalculating(),
-                     "calculateOverlappingPairs() is not called by its own callbacks.");
+                     "calculateOverlappingPairs() was called from one of its own callbacks. Step "
+                     "the world, or call it, after the step.");
     const detail::QueryScope scope(idCounter_, detail::QueryScope::Changes::allowed);
     askIfMoreWasTakenOut(dispatcher);
     if (isCacheBehind_) {  // all of it is read: what this frees first is freed before pairs are listed
@@ -413,12 +416,15 @@ bool SpatialHashBroadphase::doMeet(const btBroadphaseProxy& a, const btBroadphas
 }
 
 btBroadphaseProxy* SpatialHashBroadphase::proxyOf(ProxyId id) const {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only an id of a proxy alive leads to a proxy.");
+    HASHPHASE_ASSERT(
+        grid_.contains(id),
+        "proxyOf(): the id is null, stale, or of another broadphase. Pass the id of a live proxy.");
     return grid_.contains(id) ? proxyAt(id.index) : nullptr;
 }
 
 ProxyId SpatialHashBroadphase::idOf(const btBroadphaseProxy* proxy) {
-    HASHPHASE_ASSERT(proxy != nullptr, "Only a proxy has an id.");
+    HASHPHASE_ASSERT(proxy != nullptr,
+                     "idOf(): the proxy is null. Pass a proxy that createProxy() returned.");
     return static_cast<const Proxy*>(proxy)->id;
 }
 

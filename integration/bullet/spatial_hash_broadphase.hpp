@@ -389,7 +389,7 @@ private:
     [[nodiscard]] Proxy* checkedProxy(btBroadphaseProxy* proxy) const {
         HASHPHASE_ASSERT(
             proxy != nullptr && grid_.contains(idOf(proxy)) && proxyAt(idOf(proxy).index) == proxy,
-            "Only a proxy that this broadphase created and did not destroy can be used.");
+            "A proxy is null, destroyed or of another broadphase. Pass a live one of this one.");
         return static_cast<Proxy*>(proxy);
     }
 

@@ -45,7 +45,8 @@ void forEachListed(const btBroadphaseProxy& proxy, const Visit& visit) {
 
 void SpatialHashBroadphase::ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b,
                                        btDispatcher* dispatcher) {
-    HASHPHASE_ASSERT(a != b, "A proxy is ignored by another one.");
+    HASHPHASE_ASSERT(a != b,
+                     "ignorePair(): both proxies are the same. Pass two different proxies.");
     const ProxyPair pair = pairOf(checkedProxy(a), checkedProxy(b));
     ignore(std::span(&pair, 1), dispatcher);
 }

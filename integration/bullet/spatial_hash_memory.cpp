@@ -15,7 +15,9 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
     checkMayChange();
-    HASHPHASE_ASSERT(!isCalculating(), "Memory is not given back within a callback.");
+    HASHPHASE_ASSERT(!isCalculating(),
+                     "releaseUnusedMemory() was called from a callback of "
+                     "calculateOverlappingPairs(). Call it after the step.");
     grid_.releaseUnusedMemory();
     pairs_.releaseUnusedMemory();
     if (sweeps_ != nullptr) {
@@ -60,7 +62,9 @@ void SpatialHashBroadphase::resetPool(btDispatcher* /*dispatcher*/) {
         return;
     }
     const bool isWithin = isCalculating() || detail::QueryScope::isWithin(&grid_);
-    HASHPHASE_ASSERT(!isWithin, "resetPool() is not called by callbacks.");
+    HASHPHASE_ASSERT(
+        !isWithin,
+        "resetPool() was called from a callback or a query. Call it after the step or the query.");
     if (!isWithin) {
         pairs_.clear();
         lastUniqueId_ = 0;

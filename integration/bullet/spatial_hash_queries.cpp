@@ -163,7 +163,9 @@ void SpatialHashBroadphase::rayTests(std::span<const BroadphaseRay> rays, Parall
     grid_.expectRays(rays.size());
     parallelFor(rays.size(), kRaysAtOnce, [&](std::size_t begin, std::size_t end) {
         for (const BroadphaseRay& ray : rays.subspan(begin, end - begin)) {
-            HASHPHASE_ASSERT(ray.callback != nullptr, "Each ray has a callback.");
+            HASHPHASE_ASSERT(
+                ray.callback != nullptr,
+                "rayTests(): a ray has no callback. Set BroadphaseRay::callback of each ray.");
             rayTest(ray.from, ray.to, *ray.callback, ray.castMin, ray.castMax);
         }
     });
@@ -184,7 +186,9 @@ void SpatialHashBroadphase::closestRays(std::span<const ClosestRay> rays,
     grid_.expectRays(rays.size());
     parallelFor(rays.size(), kRaysAtOnce, [&](std::size_t begin, std::size_t end) {
         for (const ClosestRay& ray : rays.subspan(begin, end - begin)) {
-            HASHPHASE_ASSERT(ray.callback != nullptr, "Each ray has a callback.");
+            HASHPHASE_ASSERT(
+                ray.callback != nullptr,
+                "closestRays(): a ray has no callback. Set ClosestRay::callback of each ray.");
             closestRay(ray.from, ray.to, *ray.callback);
         }
     });

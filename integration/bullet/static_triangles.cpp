@@ -31,7 +31,8 @@ constexpr int kDeepest = 64;
 std::string append(const btCollisionShape& shape, const btTransform& transform,
                    std::vector<Vector3<btScalar>>& corners, int depth = 0) {
     if (depth > kDeepest) {
-        return "compounds lie within each other more than 64 deep, or one contains itself.";
+        return "compounds are nested more than 64 deep, or one contains itself. Use fewer levels "
+               "of compounds.";
     }
     if (shape.isCompound()) {
         const auto& compound = static_cast<const btCompoundShape&>(shape);
@@ -55,7 +56,7 @@ std::string append(const btCollisionShape& shape, const btTransform& transform,
     }
     if (corners.size() == before) {
         return std::string("A shape of the kind ") + shape.getName() +
-               " has no triangles; meshes, heightfields and compounds of them have.";
+               " has no triangles. Pass a mesh, a heightfield, or a compound of these.";
     }
     return {};
 }

@@ -98,7 +98,9 @@ void WorldConfigurator::apply(const WorldEffects& effects) {
 }
 
 void WorldConfigurator::prepare(btCollisionObject& object) {
-    HASHPHASE_ASSERT(object.getWorldArrayIndex() >= 0, "The object is in the world.");
+    HASHPHASE_ASSERT(
+        object.getWorldArrayIndex() >= 0,
+        "WorldConfigurator::prepare(): the object is not in the world. Add it to the world first.");
     if (!effects_.restingBoxes) {
         fileResting(*world_, object);
     }

@@ -30,7 +30,7 @@ std::string configError(const WorldsConfig& config) {
                ", but must be from 1 to " + std::to_string(WorldsBroadphase::kMostWorlds) + ".";
     }
     if (!config.worldOf) {
-        return "WorldsConfig::worldOf is empty, but must tell the world of each object.";
+        return "WorldsConfig::worldOf is empty, but must return the world of an object. Set it.";
     }
     return configError(config.each);
 }
@@ -61,19 +61,27 @@ WorldsBroadphase::~WorldsBroadphase() {
 // --- Which world ---------------------------------------------------------------------------------
 
 SpatialHashBroadphase& WorldsBroadphase::world(int number) {
-    HASHPHASE_ASSERT(number >= 0 && number < worldCount(), "There is a world of that number.");
+    HASHPHASE_ASSERT(
+        number >= 0 && number < worldCount(),
+        "WorldsBroadphase::world(): there is no world of that number. Pass 0 to worldCount() - 1.");
     return *worlds_[static_cast<std::size_t>(number)];
 }
 
 const SpatialHashBroadphase& WorldsBroadphase::world(int number) const {
-    HASHPHASE_ASSERT(number >= 0 && number < worldCount(), "There is a world of that number.");
+    HASHPHASE_ASSERT(
+        number >= 0 && number < worldCount(),
+        "WorldsBroadphase::world(): there is no world of that number. Pass 0 to worldCount() - 1.");
     return *worlds_[static_cast<std::size_t>(number)];
 }
 
 SpatialHashBroadphase& WorldsBroadphase::worldFor(const btBroadphaseProxy* proxy) const {
-    HASHPHASE_ASSERT(proxy != nullptr, "Only a proxy has a world.");
+    HASHPHASE_ASSERT(
+        proxy != nullptr,
+        "WorldsBroadphase: a proxy is null. Pass proxies that createProxy() returned.");
     const std::size_t number = static_cast<const World::Proxy*>(proxy)->world;
-    HASHPHASE_ASSERT(number < worlds_.size(), "The proxy is of one of these worlds.");
+    HASHPHASE_ASSERT(
+        number < worlds_.size(),
+        "WorldsBroadphase: a proxy is of another broadphase. Pass a proxy of these worlds.");
     return *worlds_[number];
 }
 
@@ -84,12 +92,13 @@ int WorldsBroadphase::worldOf(const btBroadphaseProxy* proxy) const {
 SpatialHashBroadphase& WorldsBroadphase::worldForClient(const void* client) {
     if (client == nullptr) {
         detail::raiseInvalidArgument(
-            "A proxy without a btCollisionObject has no world: create it by world().");
+            "WorldsBroadphase::createProxy(): without a btCollisionObject the world is unknown. "
+            "Call world(number).createProxy() instead.");
     }
     const int number = config_.worldOf(*static_cast<const btCollisionObject*>(client));
     if (number < 0 || number >= worldCount()) {
         detail::raiseInvalidArgument("WorldsConfig::worldOf returned " + std::to_string(number) +
-                                     ", but worlds are numbered from 0 to " +
+                                     ", but must return a world from 0 to " +
                                      std::to_string(worldCount() - 1) + ".");
     }
     return world(number);
@@ -183,7 +192,9 @@ void WorldsBroadphase::getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax)
 
 void WorldsBroadphase::resetPool(btDispatcher* dispatcher) {
     const bool isWithin = detail::QueryScope::isWithin(&lastUniqueId_);
-    HASHPHASE_ASSERT(!isWithin, "resetPool() is not called by callbacks.");
+    HASHPHASE_ASSERT(
+        !isWithin,
+        "resetPool() was called from a callback or a query. Call it after the step or the query.");
     const auto isEmpty = [](const auto& world) { return world->grid().size() == 0; };
     if (isWithin || !std::all_of(worlds_.begin(), worlds_.end(), isEmpty)) {
         return;
@@ -199,8 +210,9 @@ void WorldsBroadphase::resetPool(btDispatcher* dispatcher) {
 void WorldsBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies,
                                 std::span<const btVector3> aabbMins,
                                 std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher) {
-    HASHPHASE_ASSERT(proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
-                     "There is exactly one box a proxy.");
+    HASHPHASE_ASSERT(
+        proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
+        "setAabbs(): proxies and boxes have different lengths. Pass one box for each proxy.");
     std::vector<int> ids = std::exchange(notedIds_, {});  // callbacks may set others
     World::noteIds(proxies, ids);
     for (std::size_t i = 0; i < proxies.size(); ++i) {
@@ -300,7 +312,8 @@ void WorldsBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher* disp
 
 std::size_t WorldsBroadphase::shiftOrigin(const btVector3& shift) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&lastUniqueId_),
-                     "The origin is not shifted by callbacks of calculateOverlappingPairs().");
+                     "shiftOrigin() was called from a callback of calculateOverlappingPairs(). "
+                     "Call it after the step.");
     std::size_t roundedCount = 0;
     for (const auto& world : worlds_) {
         roundedCount += world->shiftOrigin(shift);

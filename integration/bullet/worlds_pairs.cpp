@@ -14,7 +14,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 void WorldsBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&lastUniqueId_),
-                     "calculateOverlappingPairs() is not called by its own callbacks.");
+                     "calculateOverlappingPairs() was called from one of its own callbacks. Step "
+                     "the world, or call it, after the step.");
     const detail::QueryScope scope(&lastUniqueId_, detail::QueryScope::Changes::allowed);
     listUpdated(dispatcher);
     if (areAnyBehind()) {  // all of the cache is read: what this frees first is freed before pairs are listed
@@ -172,7 +173,9 @@ std::size_t WorldsBroadphase::memoryBytes() const noexcept {
 
 void WorldsBroadphase::releaseUnusedMemory() noexcept {
     const bool isWithin = detail::QueryScope::isWithin(&lastUniqueId_);
-    HASHPHASE_ASSERT(!isWithin, "Memory is not given back within a callback.");
+    HASHPHASE_ASSERT(!isWithin,
+                     "releaseUnusedMemory() was called from a callback of "
+                     "calculateOverlappingPairs(). Call it after the step.");
     if (isWithin) {
         return;
     }

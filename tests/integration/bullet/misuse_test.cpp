@@ -105,42 +105,43 @@ TEST(BroadphaseMisuse, IsAsserted) {
     const std::vector<ProxyDefinition> three(3);
     const std::vector<btVector3> one(1, btVector3(0, 0, 0));
     const std::vector<btVector3> both(2, btVector3(0, 0, 0));
-    const char* const gone = "did not destroy";
-    const char* const alien = "this broadphase created";
+    const char* const notOurs = "null, destroyed or of another broadphase";
+    const char* const badMargin = "the margin is negative, NaN or infinite";
     Box box;
     expectAsserted(
-        {{"no pairs yet", [&] { SpatialHashBroadphase{&full.cache}; }},
-         {gone, [&] { broadphase.destroyProxy(dead, nullptr); }},
-         {gone, [&] { broadphase.destroyProxy(nullptr, nullptr); }},
-         {gone, [&] { boxes.set(dead, kThisPlace); }},
-         {gone, [&] { broadphase.refilter(dead, nullptr); }},
-         {gone, [&] { broadphase.ignorePair(alive, dead, nullptr); }},
-         {gone, [&] { broadphase.stopIgnoringPair(dead, alive, nullptr); }},
-         {gone, [&] { broadphase.collisionChecksChanged(dead, nullptr); }},
-         {gone, [&] { broadphase.setMargin(dead, 1, nullptr); }},
-         {gone, [&] { static_cast<void>(broadphase.margin(nullptr)); }},
-         {"is finite", [&] { broadphase.setMargin(alive, btScalar(-0.1), nullptr); }},
-         {"is finite", [&] { broadphase.setMargin(alive, kInfinity, nullptr); }},
-         {"is finite", [&] { broadphase.setMargin(alive, kInfinity - kInfinity, nullptr); }},
-         {"by another one", [&] { broadphase.ignorePair(alive, alive, nullptr); }},
+        {{"already has pairs", [&] { SpatialHashBroadphase{&full.cache}; }},
+         {notOurs, [&] { broadphase.destroyProxy(dead, nullptr); }},
+         {notOurs, [&] { broadphase.destroyProxy(nullptr, nullptr); }},
+         {notOurs, [&] { boxes.set(dead, kThisPlace); }},
+         {notOurs, [&] { broadphase.refilter(dead, nullptr); }},
+         {notOurs, [&] { broadphase.ignorePair(alive, dead, nullptr); }},
+         {notOurs, [&] { broadphase.stopIgnoringPair(dead, alive, nullptr); }},
+         {notOurs, [&] { broadphase.collisionChecksChanged(dead, nullptr); }},
+         {notOurs, [&] { broadphase.setMargin(dead, 1, nullptr); }},
+         {notOurs, [&] { static_cast<void>(broadphase.margin(nullptr)); }},
+         {badMargin, [&] { broadphase.setMargin(alive, btScalar(-0.1), nullptr); }},
+         {badMargin, [&] { broadphase.setMargin(alive, kInfinity, nullptr); }},
+         {badMargin, [&] { broadphase.setMargin(alive, kInfinity - kInfinity, nullptr); }},
+         {"both proxies are the same", [&] { broadphase.ignorePair(alive, alive, nullptr); }},
          {"", [&] { broadphase.getAabb(dead, box.min, box.max); }},
          {"", [&] { broadphase.getAabb(nullptr, box.min, box.max); }},
          {"", [&] { static_cast<void>(SpatialHashBroadphase::idOf(nullptr)); }},
-         {"alive", [&] { static_cast<void>(broadphase.proxyOf(deadId)); }},
-         {alien, [&] { broadphase.destroyProxy(foreign, nullptr); }},
-         {alien, [&] { boxes.set(foreign, kThisPlace); }},
-         {alien, [&] { broadphase.ignorePair(foreign, alive, nullptr); }},
-         {alien, [&] { broadphase.destroyProxies(std::span(&foreign, 1), nullptr); }},
-         {alien, [&] { broadphase.setAabbs(std::span(&foreign, 1), one, one, nullptr); }},
-         {gone, [&] { broadphase.destroyProxies(two, nullptr); }},
-         {"one proxy a definition", [&] { broadphase.createProxies(three, two, nullptr); }},
-         {"one box a proxy",
+         {"proxyOf(): the id is null, stale, or of another broadphase",
+          [&] { static_cast<void>(broadphase.proxyOf(deadId)); }},
+         {notOurs, [&] { broadphase.destroyProxy(foreign, nullptr); }},
+         {notOurs, [&] { boxes.set(foreign, kThisPlace); }},
+         {notOurs, [&] { broadphase.ignorePair(foreign, alive, nullptr); }},
+         {notOurs, [&] { broadphase.destroyProxies(std::span(&foreign, 1), nullptr); }},
+         {notOurs, [&] { broadphase.setAabbs(std::span(&foreign, 1), one, one, nullptr); }},
+         {notOurs, [&] { broadphase.destroyProxies(two, nullptr); }},
+         {"one proxy for each definition", [&] { broadphase.createProxies(three, two, nullptr); }},
+         {"one box for each proxy",
           [&] { broadphase.setAabbs(std::span(&alive, 1), both, one, nullptr); }},
-         {"one box a proxy",
+         {"one box for each proxy",
           [&] { broadphase.setAabbs(std::span(&alive, 1), one, both, nullptr); }},
          {"", [&] { broadphase.rayTests(std::span(&ray, 1)); }},
          {"", [&] { broadphase.closestRays(std::span(&closest, 1)); }},
-         {gone, [&] { broadphase.destroyProxies(twice, nullptr); }}});
+         {"a proxy is named twice", [&] { broadphase.destroyProxies(twice, nullptr); }}});
     boxes.proxies.clear();  // the last call has destroyed it, once
 }
 

@@ -276,9 +276,10 @@ TEST(PairCacheBatch, OfMoreThanThereMayBeIsRefusedAndChangesNothing) {
 
 TEST(PairCacheBatchDeathTest, AssertsThatAPairIsOfTwoProxies) {
     CacheSide side;
-    EXPECT_DEATH_IF_SUPPORTED(side.update({}, {{4, 4}}), "two proxies with different unique ids");
+    EXPECT_DEATH_IF_SUPPORTED(side.update({}, {{4, 4}}),
+                              "both proxies of a pair have one m_uniqueId");
     side.proxies[5].m_uniqueId = -5;
-    EXPECT_DEATH_IF_SUPPORTED(side.update({}, {{4, 5}}), "not negative");
+    EXPECT_DEATH_IF_SUPPORTED(side.update({}, {{4, 5}}), "the m_uniqueId of a proxy is negative");
 }
 #endif
 

@@ -35,9 +35,11 @@ TEST(WorldsBroadphase, RefusesWorldsThatAreNoneOfThem) {
     for (const int world : {-1, 3, std::numeric_limits<int>::max()}) {
         EXPECT_EQ(errorOf([&] { boxes.createIn(world, ManyWorlds::kPlace); }),
                   "WorldsConfig::worldOf returned " + std::to_string(world) +
-                      ", but worlds are numbered from 0 to 2.");
+                      ", but must return a world from 0 to 2.");
     }
-    EXPECT_NE(errorOf([&] { boxes.create(ManyWorlds::kPlace); }).find("has no world"),
+    EXPECT_NE(errorOf([&] {
+                  boxes.create(ManyWorlds::kPlace);
+              }).find("without a btCollisionObject the world is unknown"),
               std::string::npos);
     EXPECT_TRUE(boxes.proxies.empty());
     for (const int count : {-1, 0, WorldsBroadphase::kMostWorlds + 1}) {
@@ -84,12 +86,15 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
                   })};
     };
     const std::string notCalculated =
-        "calculateOverlappingPairs() is not called by its own callbacks.";
+        "calculateOverlappingPairs() was called from one of its own callbacks. Step the world, or "
+        "call it, after the step.";
     const std::string notShifted =
-        "The origin is not shifted by callbacks of calculateOverlappingPairs().";
-    const std::vector<std::string> expected{notCalculated, notShifted,
-                                            "resetPool() is not called by callbacks.",
-                                            notCalculated, notShifted};
+        "shiftOrigin() was called from a callback of calculateOverlappingPairs(). Call it after "
+        "the step.";
+    const std::vector<std::string> expected{
+        notCalculated, notShifted,
+        "resetPool() was called from a callback or a query. Call it after the step or the query.",
+        notCalculated, notShifted};
     boxes.step();
     EXPECT_EQ(within, expected);
     boxes.createIn(0, ManyWorlds::kPlace);
@@ -104,7 +109,8 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
     boxes.createIn(1, ManyWorlds::kPlace);
     boxes.step();
     journal.onBirth = nullptr;
-    const std::string none = "There is a world of that number.";
+    const std::string none =
+        "WorldsBroadphase::world(): there is no world of that number. Pass 0 to worldCount() - 1.";
     EXPECT_EQ(assertedBy([&] { static_cast<void>(boxes.worlds.world(-1)); }), none);
     EXPECT_EQ(assertedBy([&] { static_cast<void>(std::as_const(boxes.worlds).world(2)); }), none);
     EXPECT_NE(assertedBy([&] { boxes.worlds.destroyProxy(nullptr, nullptr); }), "nothing");
@@ -114,11 +120,11 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
     EXPECT_EQ(assertedBy([&] {
                   boxes.worlds.setAabbs({&nobody, 1}, {&origin, 1}, {&origin, 1}, nullptr);
               }),
-              "Only a proxy has an id.");
+              "A proxy is null. Pass proxies that createProxy() returned.");
     const std::array twice{proxy, proxy};
     EXPECT_NE(assertedBy([&] {
                   boxes.worlds.destroyProxies(twice, nullptr);
-              }).find("Each proxy is named once"),
+              }).find("a proxy is named twice"),
               std::string::npos);
     boxes.destroy(proxy);
     EXPECT_NE(assertedBy([&] { boxes.set(proxy, ManyWorlds::kPlace); }), "nothing");
