@@ -135,14 +135,16 @@ std::span<const std::uint32_t> Radar<Scalar>::scan(const Grid<Scalar>& grid,
                                                    const RadarWindow<Scalar>& window,
                                                    std::uint32_t groupCount,
                                                    RadarGroups groupOf) & {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
-                     "A radar does not scan from within its own scan.");
+    HASHPHASE_ASSERT(
+        !detail::QueryScope::isWithin(this),
+        "Radar::scan() was called from within its own scan. Call it after that returns.");
     const detail::QueryScope scope(this);
     const RadarCells<Scalar> cells(window);
     HASHPHASE_ASSERT(
         double{1} * window.columns * window.rows * std::max(window.layers, 1U) * groupCount <=
             double{kMostCounts},
-        "A radar has at most 2^28 counts.");
+        "Radar::scan(): the window has more than 2^28 counts. Use fewer columns, rows, layers or "
+        "groups.");
     counts_.assign(groupCount * cells.size(), 0);
     CollectRadar<Scalar> collector{grid, cells, groupCount, groupOf, counts_};
     cost_ =

@@ -77,12 +77,14 @@ QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
                                        ProxyFilter filter, ProxyFilter changes,
                                        ParallelFor parallelFor) {
     HASHPHASE_ASSERT(colourCount > 0 && colourCount <= RadiusSearch<Scalar>::kMostGroups,
-                     "There are 1 to kMostGroups colours.");
+                     "RarestColour::update(): colourCount is 0 or too large. Pass 1 to "
+                     "RadiusSearch::kMostGroups.");
     search_.take(grid, radius, filter, parallelFor);
     const std::span<const ProxyId> ids = search_.ids();
     HASHPHASE_ASSERT(
         std::all_of(ids.begin(), ids.end(), [&](ProxyId id) { return id.index < colours.size(); }),
-        "There is a colour for each agent, by ProxyId::index.");
+        "RarestColour::update(): colours is too short. Pass one for each ProxyId::index: "
+        "Grid::indexLimit() of them.");
 
     // All read ...
     counts_.resize(ids.size() * colourCount);
@@ -111,9 +113,11 @@ QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radi
                                            std::span<const ProxyId> agents, ProxyFilter filter,
                                            ParallelFor parallelFor) {
     HASHPHASE_ASSERT(colourCount > 0 && colourCount <= RadiusSearch<Scalar>::kMostGroups,
-                     "There are 1 to kMostGroups colours.");
+                     "RarestColour::updateSome(): colourCount is 0 or too large. Pass 1 to "
+                     "RadiusSearch::kMostGroups.");
     HASHPHASE_ASSERT(grid.indexLimit() <= colours.size(),
-                     "There is a colour for each agent, by ProxyId::index.");
+                     "RarestColour::updateSome(): colours is too short. Pass one for each "
+                     "ProxyId::index: Grid::indexLimit() of them.");
     // All read ...
     rarest_.resize(agents.size());
     constexpr std::size_t kGrain = 64;

@@ -151,8 +151,9 @@ QueryCost visibleFrom(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer,
 template <class Scalar>
 QueryCost Sight<Scalar>::look(const Grid<Scalar>& grid, std::span<const Viewer<Scalar>> viewers,
                               ProxyFilter targets, ProxyFilter blockers, ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
-                     "Viewers are not replaced from within the filters of look().");
+    HASHPHASE_ASSERT(
+        !detail::QueryScope::isWithin(this),
+        "Sight::look() was called from within its own filters. Call it after that look() returns.");
     constexpr std::size_t grain = 16;
     viewerCount_ = 0;  // nobody has seen anybody, should memory run out
     found_.resize(std::max(found_.size(), viewers.size()));
@@ -179,7 +180,8 @@ QueryCost Sight<Scalar>::look(const Grid<Scalar>& grid, std::span<const Viewer<S
 template <class Scalar>
 std::span<const ProxyId> Sight<Scalar>::seenBy(std::size_t viewer) const {
     HASHPHASE_ASSERT(viewer < viewerCount_,
-                     "Only the viewers of the last look() have seen anybody.");
+                     "Sight::seenBy(): there is no such viewer. Pass an index into the viewers of "
+                     "the last look().");
     return found_[viewer].seen;
 }
 

@@ -14,7 +14,8 @@ namespace hashphase {
 namespace {
 
 [[maybe_unused]] constexpr const char* kMustNotChange =
-    "Zones are neither changed nor updated from within the filter of update().";
+    "Zones were changed or updated from within the filter of update(). Do so after update() "
+    "returns.";
 
 template <class Scalar, class Region>
 bool isIn(const Region& region, const Vector3<Scalar>& point) {
@@ -58,7 +59,9 @@ ZoneId Zones<Scalar>::add(const Zone<Scalar>& zone) {
 
 template <class Scalar>
 void Zones<Scalar>::set(ZoneId id, const Zone<Scalar>& zone) {
-    HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be set.");
+    HASHPHASE_ASSERT(contains(id),
+                     "Zones::set(): the id is null, stale, or of other Zones. Pass an id that "
+                     "add() returned and that was not removed.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     if (contains(id)) {
         slots_[id.index].zone = zone;
@@ -67,7 +70,9 @@ void Zones<Scalar>::set(ZoneId id, const Zone<Scalar>& zone) {
 
 template <class Scalar>
 void Zones<Scalar>::remove(ZoneId id) {
-    HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be removed.");
+    HASHPHASE_ASSERT(contains(id),
+                     "Zones::remove(): the id is null, stale, or of other Zones. Pass an id that "
+                     "add() returned and that was not removed.");
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     if (!contains(id)) {
         return;
@@ -100,7 +105,9 @@ bool Zones<Scalar>::contains(ZoneId id) const noexcept {
 
 template <class Scalar>
 const typename Zones<Scalar>::Slot& Zones<Scalar>::slot(ZoneId id) const {
-    HASHPHASE_ASSERT(contains(id), "Only a zone that was not removed can be asked about.");
+    HASHPHASE_ASSERT(contains(id),
+                     "Zones: the id is null, stale, or of other Zones. Pass an id that add() "
+                     "returned and that was not removed.");
     static const Slot none{};
     return contains(id) ? slots_[id.index] : none;
 }

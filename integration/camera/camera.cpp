@@ -26,10 +26,12 @@ std::string detail::cameraError(const Matrix4<Scalar>& viewProjection, const Vie
         return error;
     }
     if (!isGood(viewport)) {
-        return "The viewport must be of finite numbers, its width and height above zero.";
+        return "The viewport is not finite, or its width or height is not above 0. Pass the part "
+               "of the window to draw to [pixels].";
     }
     if (!CameraInverse(viewProjection.template cast<double>()).isValid()) {
-        return "The view-projection matrix is singular; it must have an inverse.";
+        return "The view-projection matrix is singular: it has no inverse. Check the near and far "
+               "planes and the field of view.";
     }
     return {};
 }

@@ -9,18 +9,19 @@ namespace hashphase::detail {
 template <class Scalar>
 std::string frustumError(const Matrix4<Scalar>& viewProjection, const ScreenEdges<Scalar>& edges) {
     if (!viewProjection.allFinite()) {
-        return "The view-projection matrix has a number that is NaN or infinite; all 16 must be "
-               "finite.";
+        return "The view-projection matrix has a number that is NaN or infinite. Pass 16 finite "
+               "numbers.";
     }
     const auto& [left, bottom, right, top] = edges;
     const bool isFinite =
         std::isfinite(left) && std::isfinite(bottom) && std::isfinite(right) && std::isfinite(top);
     if (!isFinite || left > right || bottom > top) {
-        return "The rectangle of the screen must have finite corners, min() not above max().";
+        return "The rectangle of the screen is inverted or not finite. Pass finite corners, with "
+               "min() not above max().";
     }
     if (viewProjection.row(3).isZero(0)) {
-        return "The last row of the view-projection matrix is zero: nothing has a place on the "
-               "screen.";
+        return "The last row of the view-projection matrix is zero, so nothing is on the screen. "
+               "Pass projection * view.";
     }
     return {};
 }

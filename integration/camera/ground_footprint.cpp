@@ -197,14 +197,17 @@ std::string detail::footprintError(const Matrix4<Scalar>& viewProjection,
         return error;
     }
     if (!CameraInverse(viewProjection.template cast<double>()).isValid()) {
-        return "The view-projection matrix is singular; it must have an inverse.";
+        return "The view-projection matrix is singular: it has no inverse. Check the near and far "
+               "planes and the field of view.";
     }
     constexpr Scalar infinity = std::numeric_limits<Scalar>::infinity();
     if (!(heights.low <= heights.high) || heights.low == infinity || heights.high == -infinity) {
-        return "The range of heights must be numbers, low not above high.";
+        return "The range of heights is inverted, NaN, or all at one infinity. Pass numbers, low "
+               "not above high [m].";
     }
     if (!(farthest > 0) || std::isinf(farthest)) {
-        return "The farthest distance must be positive and finite.";
+        return "The farthest distance is not finite, or not above 0. Pass a finite distance above "
+               "0 [m].";
     }
     return {};
 }

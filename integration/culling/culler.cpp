@@ -66,7 +66,8 @@ bool Culler<Scalar>::keepsSet() const {
 template <class Scalar>
 bool Culler<Scalar>::begin(const Grid<Scalar>& grid, const Frustum& frustum, Scalar moved) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
-                     "A culler does not look from within its own filter or forEach().");
+                     "Culler::look() was called from its own filter or from forEach(). Call it "
+                     "after they return.");
     if (!isFrozen_) {
         frustum_ = frustum;
     }

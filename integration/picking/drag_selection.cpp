@@ -22,11 +22,11 @@ std::string selectionError(const Camera<Scalar>& camera, const Pixel& a, const P
         return detail::cameraError<Scalar>(matrixOf(camera), camera.viewport());
     }
     if (a.hasNaN() || b.hasNaN()) {
-        return "A corner of the rectangle is NaN; both must be places in the window.";
+        return "A corner of the rectangle is NaN. Pass two positions in the window [pixels].";
     }
     const auto [left, bottom, right, top] = camera.edgesBetween(a, b);
     if (left > right || bottom > top) {
-        return "The rectangle lies beside the viewport; some of it must lie inside.";
+        return "The rectangle lies outside the viewport. Pass one that overlaps it [pixels].";
     }
     return {};
 }

@@ -59,7 +59,8 @@ QueryCost ChangedGround<Scalar>::findStanding(const Grid<Scalar>& grid,
                                               std::type_identity_t<Scalar> reach,
                                               std::vector<ProxyId>& standing,
                                               ProxyFilter filter) const {
-    HASHPHASE_ASSERT(reach >= 0, "A reach is 0 or more.");
+    HASHPHASE_ASSERT(reach >= 0,
+                     "ChangedGround::findStanding(): reach is negative or NaN. Pass 0 m or more.");
     standing.clear();
     QueryCost cost;
     if (!(reach >= 0) || terrain_ == nullptr) {

@@ -14,7 +14,9 @@ Terrain<Scalar>::Terrain(Grid<Scalar>& grid, UpAxis up)
 
 template <class Scalar>
 Terrain<Scalar>::~Terrain() {
-    HASHPHASE_ASSERT(changed_.empty(), "A terrain outlives each ChangedGround of it.");
+    HASHPHASE_ASSERT(changed_.empty(),
+                     "Terrain: the terrain was destroyed before a ChangedGround of it. Destroy "
+                     "that first: declare it after the terrain.");
     for (ChangedGround<Scalar>* changed : changed_) {
         changed->terrain_ = nullptr;
     }
@@ -26,7 +28,9 @@ template <class Scalar>
 void Terrain<Scalar>::setSeamTolerance(std::optional<Scalar> tolerance) {
     const bool isGood = !tolerance || (*tolerance >= 0 && detail::isFinite(*tolerance) &&
                                        static_cast<double>(*tolerance) <= kFarthest);
-    HASHPHASE_ASSERT(isGood, "A tolerance is 0 or more, and no more than Terrain::kFarthest.");
+    HASHPHASE_ASSERT(isGood,
+                     "Terrain::setSeamTolerance(): the tolerance is negative, NaN or too large. "
+                     "Pass 0 to Terrain::kFarthest [m].");
     if (isGood) {
         setTolerance_ = tolerance;
     }
@@ -55,7 +59,9 @@ detail::GroundTriangle<Scalar> Terrain<Scalar>::groundTriangle(const Corners& co
 
 template <class Scalar>
 void Terrain<Scalar>::shiftOrigin(const Point& shift) {
-    HASHPHASE_ASSERT(shift.allFinite(), "The origin is shifted by what is finite.");
+    HASHPHASE_ASSERT(
+        shift.allFinite(),
+        "Terrain::shiftOrigin(): the shift is NaN or infinite. Pass finite coordinates [m].");
     if (!shift.allFinite()) {
         return;
     }
@@ -78,7 +84,8 @@ void Terrain<Scalar>::shiftOrigin(const Point& shift) {
 
 template <class Scalar>
 typename Terrain<Scalar>::Corners Terrain<Scalar>::corners(std::uint32_t triangle) const {
-    HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
+    HASHPHASE_ASSERT(triangle < size(),
+                     "Terrain::corners(): there is no such triangle. Pass a number below size().");
     const detail::GroundTriangle<Scalar>& stored = triangles_[triangle];
     Corners corners;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -92,7 +99,8 @@ typename Terrain<Scalar>::Corners Terrain<Scalar>::corners(std::uint32_t triangl
 
 template <class Scalar>
 Vector3<Scalar> Terrain<Scalar>::normal(std::uint32_t triangle) const {
-    HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
+    HASHPHASE_ASSERT(triangle < size(),
+                     "Terrain::normal(): there is no such triangle. Pass a number below size().");
     const auto& stored = triangles_[triangle].normal;
     Point normal;
     normal[alongX_] = static_cast<Scalar>(stored.x());
@@ -103,7 +111,8 @@ Vector3<Scalar> Terrain<Scalar>::normal(std::uint32_t triangle) const {
 
 template <class Scalar>
 ProxyId Terrain<Scalar>::proxy(std::uint32_t triangle) const {
-    HASHPHASE_ASSERT(triangle < size(), "Triangles have numbers below size().");
+    HASHPHASE_ASSERT(triangle < size(),
+                     "Terrain::proxy(): there is no such triangle. Pass a number below size().");
     return proxies_[triangle];
 }
 

@@ -26,7 +26,9 @@ template <class Scalar>
 
 /// How many triangles have so many corners.
 [[nodiscard]] inline std::size_t triangleCount(std::size_t cornerCount) {
-    HASHPHASE_ASSERT(cornerCount % 3 == 0, "Each triangle has three corners.");
+    HASHPHASE_ASSERT(cornerCount % 3 == 0,
+                     "Terrain: the number of corners or indices is not a multiple of 3. Pass 3 for "
+                     "each triangle.");
     return cornerCount % 3 == 0 ? cornerCount / 3 : 0;
 }
 
@@ -94,7 +96,9 @@ AddedTriangles Terrain<Scalar>::replace(std::uint32_t first, std::span<const Poi
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::addAll(std::size_t count, CornersOf cornersOf) {
     const std::uint32_t first = free_.firstFit(count, size());
-    HASHPHASE_ASSERT(count <= kNone - first, "A terrain holds fewer than 2^32 - 1 triangles.");
+    HASHPHASE_ASSERT(count <= kNone - first,
+                     "Terrain::add(): the terrain would have 2^32 - 1 triangles or more. Add "
+                     "fewer, or use another terrain.");
     if (count > kNone - first) {
         return {};
     }
@@ -110,7 +114,9 @@ AddedTriangles Terrain<Scalar>::addAll(std::size_t count, CornersOf cornersOf) {
 template <class Scalar>
 AddedTriangles Terrain<Scalar>::replaceAll(std::uint32_t first, std::size_t count,
                                            CornersOf cornersOf) {
-    HASHPHASE_ASSERT(areTaken(first, count), "Only triangles that were not removed are replaced.");
+    HASHPHASE_ASSERT(areTaken(first, count),
+                     "Terrain::replace(): some of these triangles do not exist. Pass numbers that "
+                     "add() returned and that were not removed.");
     if (!areTaken(first, count)) {
         return {};
     }
@@ -212,7 +218,9 @@ void Terrain<Scalar>::unsetTriangle(std::uint32_t number) {
 
 template <class Scalar>
 void Terrain<Scalar>::remove(std::uint32_t first, std::uint32_t count) {
-    HASHPHASE_ASSERT(areTaken(first, count), "Only triangles that were not removed are removed.");
+    HASHPHASE_ASSERT(areTaken(first, count),
+                     "Terrain::remove(): some of these triangles do not exist. Pass numbers that "
+                     "add() returned and that were not removed.");
     if (!areTaken(first, count)) {
         return;
     }

@@ -314,7 +314,9 @@ QueryCost Terrain<Scalar>::searchEach(std::span<const Point> points, std::span<F
 template <class Scalar>
 QueryCost Terrain<Scalar>::surfacesBelow(std::span<const Point> points, std::span<Found> found,
                                          ParallelFor parallelFor) const {
-    HASHPHASE_ASSERT(points.size() == found.size(), "Each point has a place for what is found.");
+    HASHPHASE_ASSERT(points.size() == found.size(),
+                     "Terrain::surfacesBelow(): points and found have different lengths. Pass one "
+                     "Found for each point.");
     return searchEach<SurfaceSearch>(
         points, found, parallelFor,
         [&](std::size_t i, Aabb<Scalar>& column, SurfaceSearch& search) {
@@ -330,7 +332,8 @@ QueryCost Terrain<Scalar>::restingHeights(std::span<const Point> centers,
                                           std::span<const Scalar> radii, std::span<Found> found,
                                           ParallelFor parallelFor) const {
     HASHPHASE_ASSERT(centers.size() == found.size() && radii.size() == found.size(),
-                     "Each sphere has a centre, a radius and a place for what is found.");
+                     "Terrain::restingHeights(): centers, radii and found have different lengths. "
+                     "Pass one of each for each sphere.");
     using Limits = std::numeric_limits<Scalar>;
     return searchEach<RestSearch>(
         centers, found, parallelFor, [&](std::size_t i, Aabb<Scalar>& column, RestSearch& search) {
