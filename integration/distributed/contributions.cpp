@@ -30,9 +30,12 @@ std::span<const Parcel> Contributions::pack(const RankGrid<Scalar>& grid,
     writers_.resize(std::max<std::size_t>(writers_.size(), grid.partition().rankCount()));
     for (const Contribution& one : forGhosts) {
         const bool isGhost = grid.grid().contains(one.proxy) && !grid.isOwned(one.proxy);
-        HASHPHASE_ASSERT(isGhost, "Contributions are sent for ghosts: what lives here needs none.");
+        HASHPHASE_ASSERT(isGhost,
+                         "Contributions::pack(): a proxy is not a ghost of this rank. Pass ghosts "
+                         "only; change objects of this rank directly.");
         HASHPHASE_ASSERT(one.bytes.size() <= kMostBytes,
-                         "A contribution has at most 65,536 bytes.");
+                         "Contributions::pack(): a contribution has more than 65,536 bytes. Pass "
+                         "fewer for each object.");
         if (!isGhost || one.bytes.size() > kMostBytes) {
             continue;
         }
@@ -63,17 +66,21 @@ std::span<const Contribution> Contributions::finish(const RankGrid<Scalar>& grid
     received_.clear();
     for (const Parcel& parcel : sorted) {
         detail::ByteReader reader =
-            detail::openParcel(parcel, kContributionMagic, "are no contributions of this version.");
+            detail::openParcel(parcel, kContributionMagic,
+                               "is not from Contributions::pack() of this version. Use the same "
+                               "hashphase on all ranks.");
         while (reader.left() > 0) {
             const GlobalId object{reader.read<std::uint64_t>()};
             const auto count = reader.read<std::uint32_t>();
             if (reader.isTorn() || count > reader.left()) {
-                detail::raiseBadParcel(parcel, "ends within a contribution.");
+                detail::raiseBadParcel(
+                    parcel, "ends within a contribution. Pass all bytes that pack() made.");
             }
             const ProxyId proxy = grid.find(object);
             if (!grid.isOwned(proxy)) {
-                detail::raiseBadParcel(parcel, "is for the object " + std::to_string(object.value) +
-                                                   ", which does not live here.");
+                detail::raiseBadParcel(parcel, "is for object " + std::to_string(object.value) +
+                                                   ", which does not live here. Call pack() and "
+                                                   "finish() on all ranks before the next change.");
             }
             received_.push_back({proxy, reader.rest().first(count), parcel.rank});
             reader.skip(count);

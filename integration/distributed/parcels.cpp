@@ -25,14 +25,15 @@ ByteReader openParcel(const Parcel& parcel, std::uint32_t magic, const char* isN
         raiseBadParcel(parcel, isNot);
     }
     if (size != parcel.bytes.size()) {
-        raiseBadParcel(parcel, "says that it has " + std::to_string(size) + " bytes, and has " +
-                                   std::to_string(parcel.bytes.size()) + ".");
+        raiseBadParcel(parcel, "had " + std::to_string(size) + " bytes when packed, but has " +
+                                   std::to_string(parcel.bytes.size()) +
+                                   " here. Pass all of its bytes, and no others.");
     }
     return reader;
 }
 
 void raiseBadParcel(const Parcel& parcel, const std::string& fault) {
-    throw RankError("What rank " + std::to_string(parcel.rank) + " has sent " + fault);
+    throw RankError("The parcel from rank " + std::to_string(parcel.rank) + " " + fault);
 }
 
 }  // namespace hashphase::detail

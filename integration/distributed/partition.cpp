@@ -95,7 +95,8 @@ Partition<Scalar>::Partition(std::span<const Cut<Scalar>> cuts) : cuts_(cuts.beg
     for (const Cut<Scalar>& cut : cuts) {
         if (cut.axis > 2 || std::isnan(cut.at)) {
             detail::raiseInvalidArgument(
-                "A cut of a partition lies across the axis 0, 1 or 2, and is not NaN.");
+                "Partition: a cut has an axis above 2, or lies at NaN. Set Cut::axis to 0, 1 or 2, "
+                "and Cut::at to a number [m].");
         }
     }
 }
@@ -104,7 +105,7 @@ template <class Scalar>
 Partition<Scalar> Partition<Scalar>::balanced(std::uint32_t ranks,
                                               std::span<const WeightedPoint<Scalar>> points,
                                               const Partition* last) {
-    HASHPHASE_ASSERT(ranks > 0, "A partition has one rank or more.");
+    HASHPHASE_ASSERT(ranks > 0, "Partition::balanced(): ranks is 0. Pass 1 or more.");
     std::vector<WeightedPoint<Scalar>> counted;
     counted.reserve(points.size());
     for (const WeightedPoint<Scalar>& point : points) {

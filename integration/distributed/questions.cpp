@@ -19,7 +19,8 @@ namespace {
 constexpr std::uint32_t kQuestionMagic = 0x68707131;  // "hpq1"
 constexpr std::uint32_t kAnswerMagic = 0x68706131;    // "hpa1"
 [[maybe_unused]] constexpr const char* kAskedWhen =
-    "All ranks ask and answer after an update, before the next change.";
+    "RankQuestions: the grid has changed after its last finish(). Call pack() and answer() after "
+    "finish(), before the next change.";
 
 template <class Scalar>
 void writePoint(detail::ByteWriter& writer, const Vector3<Scalar>& point) {
@@ -175,7 +176,9 @@ template <class Scalar>
 std::span<const Parcel> RankQuestions<Scalar>::pack(const RankGrid<Scalar>& grid,
                                                     std::span<const Question<Scalar>> questions) {
     HASHPHASE_ASSERT(grid.isUpToDate(), kAskedWhen);
-    detail::checkCount(questions.size(), ~std::uint32_t{0}, "Too many questions at a time.");
+    detail::checkCount(
+        questions.size(), ~std::uint32_t{0},
+        "RankQuestions::pack(): more than 4,294,967,295 questions. Pass fewer at a time.");
     clearWriters();
     numbered_.clear();
     mosts_.clear();
@@ -215,9 +218,13 @@ std::span<const Parcel> RankQuestions<Scalar>::answer(const RankGrid<Scalar>& gr
     clearWriters();
     for (const Parcel& parcel : received) {
         detail::ByteReader reader =
-            detail::openParcel(parcel, kQuestionMagic, "are no questions of this version.");
+            detail::openParcel(parcel, kQuestionMagic,
+                               "is not from RankQuestions::pack() of this version. Use the same "
+                               "hashphase on all ranks.");
         if (parcel.rank >= grid.partition().rankCount()) {
-            detail::raiseBadParcel(parcel, "are questions of a rank that there is not.");
+            detail::raiseBadParcel(
+                parcel,
+                "is from a rank outside the partition. Set Parcel::rank to the rank that sent it.");
         }
         detail::ByteWriter& writer =
             writerFor(parcel.rank, grid.partition().rankCount(), kAnswerMagic);
@@ -226,7 +233,8 @@ std::span<const Parcel> RankQuestions<Scalar>::answer(const RankGrid<Scalar>& gr
             const auto question = readQuestion<Scalar>(reader);
             if (reader.isTorn() || question.shape > Question<Scalar>::Shape::ray) {
                 detail::raiseBadParcel(parcel,
-                                       "ends within a question, or asks what there is not.");
+                                       "ends within a question, or has an unknown one. Pass all "
+                                       "bytes that pack() made.");
             }
             findObjects(grid, question, answer_);
             writer.write(number);
@@ -245,14 +253,18 @@ template <class Scalar>
 Answers<Scalar> RankQuestions<Scalar>::finish(std::span<const Parcel> received) {
     for (const Parcel& parcel : received) {
         detail::ByteReader reader =
-            detail::openParcel(parcel, kAnswerMagic, "are no answers of this version.");
+            detail::openParcel(parcel, kAnswerMagic,
+                               "is not from RankQuestions::answer() of this version. Use the same "
+                               "hashphase on all ranks.");
         while (reader.left() > 0) {
             const auto number = reader.read<std::uint32_t>();
             const auto count = reader.read<std::uint32_t>();
             constexpr std::size_t kFoundBytes = sizeof(Scalar) + 8 + 4;
             if (reader.isTorn() || count > reader.left() / kFoundBytes || number >= mosts_.size()) {
-                detail::raiseBadParcel(parcel,
-                                       "ends within an answer, or answers what was not asked.");
+                detail::raiseBadParcel(
+                    parcel,
+                    "ends within an answer, or answers a question that was not asked. Pass all "
+                    "bytes that answer() made for the last pack().");
             }
             for (std::uint32_t i = 0; i < count; ++i) {
                 FoundObject<Scalar> found;

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::uint32_t kMostPayloadBytes = 65'536;
 [[maybe_unused]] constexpr const char* kBetweenFrames =
-    "Objects are changed before pack() or after finish().";
+    "A RankGrid was changed between pack() and finish(). Change it before pack() or after "
+    "finish().";
 
 // What work costs, in tests of boxes: filing a box, and having a pair, which begins and ends now and then. By times
 // of uniform, clustered and graded populations: 25 to 45 ns to file, 15 ns a pair. Tests count for little, as many of
@@ -64,9 +65,12 @@ RankGrid<Scalar>::RankGrid(std::uint32_t rank, const Partition<Scalar>& partitio
       pairs_(grid_),
       writers_(partition.rankCount()),
       entryCounts_(partition.rankCount()) {
-    HASHPHASE_ASSERT(rank < partition.rankCount(), "A partition has no region for this rank.");
+    HASHPHASE_ASSERT(rank < partition.rankCount(),
+                     "RankGrid: the partition has no region for this rank. Pass a rank below "
+                     "Partition::rankCount().");
     if (config.payloadBytes > kMostPayloadBytes) {
-        detail::raiseInvalidArgument("payloadBytes is " + std::to_string(config.payloadBytes) +
+        detail::raiseInvalidArgument("RankGridConfig::payloadBytes is " +
+                                     std::to_string(config.payloadBytes) +
                                      ", but must be 0 to 65536.");
     }
 }
@@ -91,8 +95,9 @@ ProxyId RankGrid<Scalar>::add(GlobalId object, const Box& box, const ProxyGroups
         return {};
     }
     if (!find(object).isNull()) {
-        detail::raiseInvalidArgument("The global id " + std::to_string(object.value) +
-                                     " names an object already.");
+        detail::raiseInvalidArgument(
+            "RankGrid::add(): the global id " + std::to_string(object.value) +
+            " already names an object or a ghost here. Give each object an id of its own.");
     }
     const ProxyId id = addProxy(object, box, groups);
     // The index of an object that was added and removed since finish() is in touched_ already.
@@ -183,7 +188,9 @@ std::span<const std::byte> RankGrid<Scalar>::readPayload(ProxyId id) const noexc
 
 template <class Scalar>
 std::uint32_t RankGrid<Scalar>::homeOf(ProxyId id) const {
-    HASHPHASE_ASSERT(grid_.contains(id), "Only objects and ghosts of this rank have a home.");
+    HASHPHASE_ASSERT(grid_.contains(id),
+                     "RankGrid::homeOf(): the id is null or stale. Pass the id of an object or "
+                     "ghost on this rank.");
     return grid_.contains(id) && !isOwned(id) ? homes_[id.index] : rank_;
 }
 
@@ -196,7 +203,8 @@ GlobalId RankGrid<Scalar>::globalId(ProxyId id) const {
         std::lower_bound(formerNames_.begin(), formerNames_.end(), FormerName{id, GlobalId{}});
     const bool isKnown = former != formerNames_.end() && former->id == id;
     HASHPHASE_ASSERT(isKnown,
-                     "Objects and ghosts here have a name, and what the last frame has removed.");
+                     "RankGrid::globalId(): the id is null or stale. Pass the id of an object or "
+                     "ghost on this rank, or of one that the last frame removed.");
     return isKnown ? former->object : GlobalId{};
 }
 
@@ -212,7 +220,8 @@ template <class Scalar>
 void RankGrid<Scalar>::setPartition(const Partition<Scalar>& partition) {
     HASHPHASE_ASSERT(!isPacked_, kBetweenFrames);
     HASHPHASE_ASSERT(partition.rankCount() == lastPartition_.rankCount(),
-                     "A partition is replaced by one of as many ranks.");
+                     "RankGrid::setPartition(): the new partition has another number of ranks. "
+                     "Pass one with the same rankCount().");
     if (isPacked_ || partition.rankCount() != lastPartition_.rankCount()) {
         return;
     }
@@ -234,7 +243,9 @@ void RankGrid<Scalar>::touchForPartition() {
 
 template <class Scalar>
 RankChanges RankGrid<Scalar>::finish(std::span<const Parcel> received, ParallelFor parallelFor) {
-    HASHPHASE_ASSERT(isPacked_, "finish() comes after pack().");
+    HASHPHASE_ASSERT(
+        isPacked_,
+        "RankGrid::finish() was called without pack(). Call pack() first, once a frame.");
     if (!isPacked_) {
         return {};
     }

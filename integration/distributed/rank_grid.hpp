@@ -273,10 +273,12 @@ private:
         return isOutside == 0;
     }
     [[nodiscard]] bool canChange(ProxyId id) const {
-        HASHPHASE_ASSERT(
-            isOwned(id),
-            "Only an object that lives on this rank, and was not removed, can be changed.");
-        HASHPHASE_ASSERT(!isPacked_, "Objects are changed before pack() or after finish().");
+        HASHPHASE_ASSERT(isOwned(id),
+                         "RankGrid: the object does not live on this rank, or was removed. Change "
+                         "it on its own rank.");
+        HASHPHASE_ASSERT(!isPacked_,
+                         "A RankGrid was changed between pack() and finish(). Change it before "
+                         "pack() or after finish().");
         return !isPacked_ && isOwned(id);
     }
     void touch(std::uint32_t index) {

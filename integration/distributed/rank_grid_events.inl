@@ -85,7 +85,9 @@ void RankGrid<Scalar>::reportPairs(const PairChanges& changes) {
 
 template <class Scalar>
 void RankGrid<Scalar>::collectHere(std::vector<ProxyPair>& pairs) const {
-    HASHPHASE_ASSERT(isUpToDate(), "Pairs are collected after finish(), before the next change.");
+    HASHPHASE_ASSERT(isUpToDate(),
+                     "RankGrid: pairs were collected after a change. Collect them after finish(), "
+                     "before the next change.");
     pairs_.collect(pairs);
     std::erase_if(pairs, [&](const ProxyPair& pair) { return !ownsPair(pair); });
 }

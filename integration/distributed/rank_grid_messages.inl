@@ -63,7 +63,9 @@ Aabb<Scalar> readBox(detail::ByteReader& reader) {
 
 template <class Scalar>
 std::span<const Parcel> RankGrid<Scalar>::pack() {
-    HASHPHASE_ASSERT(!isPacked_, "pack() is called once a frame, finish() comes after it.");
+    HASHPHASE_ASSERT(
+        !isPacked_,
+        "RankGrid::pack() was called twice without finish(). Call each of them once a frame.");
     if (isPacked_) {
         return parcels_;
     }
@@ -224,41 +226,50 @@ auto RankGrid<Scalar>::readEntry(detail::ByteReader& reader) const -> Entry {
 
 template <class Scalar>
 void RankGrid<Scalar>::readParcel(const Parcel& parcel) {
-    detail::ByteReader reader =
-        detail::openParcel(parcel, kMagic, "is no parcel of a RankGrid of this version.");
+    detail::ByteReader reader = detail::openParcel(
+        parcel, kMagic,
+        "is not from RankGrid::pack() of this version. Use the same hashphase on all ranks.");
     const auto frame = reader.read<std::uint64_t>();
     const auto count = reader.read<std::uint32_t>();
     if (reader.isTorn() || parcel.rank >= partition_.rankCount()) {
-        detail::raiseBadParcel(parcel, "has no frame, or is of a rank that there is not.");
+        detail::raiseBadParcel(parcel,
+                               "has no frame, or is from a rank outside the partition. Pass all "
+                               "its bytes, and the rank that sent it.");
     }
     if (frame != frame_) {
-        detail::raiseBadParcel(parcel, "is of frame " + std::to_string(frame) + "; this is frame " +
-                                           std::to_string(frame_) + ".");
+        detail::raiseBadParcel(parcel,
+                               "is of frame " + std::to_string(frame) + ", but this is frame " +
+                                   std::to_string(frame_) +
+                                   ". Call pack() and finish() equally often on all ranks.");
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const Entry entry = readEntry(reader);
         const bool hasPayload = (entry.kind & kEntryPayload) != 0;
         if (reader.isTorn() || (hasPayload && entry.payload.size() != config_.payloadBytes)) {
-            detail::raiseBadParcel(parcel, "ends within its entry " + std::to_string(i + 1) +
-                                               " of " + std::to_string(count) + ".");
+            detail::raiseBadParcel(
+                parcel, "ends within its entry " + std::to_string(i + 1) + " of " +
+                            std::to_string(count) +
+                            ". Pass all its bytes, and set the same payloadBytes on all ranks.");
         }
         if (!isKind(entry.kind) || (hasPayload && config_.payloadBytes == 0)) {
             detail::raiseBadParcel(
-                parcel,
-                "has an entry of the kind " + std::to_string(entry.kind) + ", which there is not.");
+                parcel, "has an entry of the unknown kind " + std::to_string(entry.kind) +
+                            ". Use the same hashphase and payloadBytes on all ranks.");
         }
         const bool leavesForHere = entry.home == rank_ && (entry.kind & kEntryHome) != 0 &&
                                    (entry.kind & (kEntryLeaves | kEntryRemoved)) != 0;
         if (entry.home >= partition_.rankCount() || leavesForHere) {
-            detail::raiseBadParcel(parcel, "moves an object to rank " + std::to_string(entry.home) +
-                                               " of " + std::to_string(partition_.rankCount()) +
-                                               ".");
+            detail::raiseBadParcel(
+                parcel, "moves an object to rank " + std::to_string(entry.home) + " of " +
+                            std::to_string(partition_.rankCount()) +
+                            ", which is impossible. Set the same partition on all ranks.");
         }
         entries_.emplace_back(parcel, entry);
     }
     if (reader.left() > 0) {
-        detail::raiseBadParcel(parcel, "goes on for " + std::to_string(reader.left()) +
-                                           " bytes behind its last entry.");
+        detail::raiseBadParcel(
+            parcel, "has " + std::to_string(reader.left()) +
+                        " bytes after its last entry. Set the same payloadBytes on all ranks.");
     }
 }
 
@@ -303,8 +314,9 @@ void RankGrid<Scalar>::takeEntry(const Parcel& parcel, const Entry& entry) {
     const ProxyId id = find(entry.object);
     if (id.isNull() || (marks_[id.index] & (kOwned | kTouched)) != 0 ||
         homes_[id.index] != parcel.rank) {
-        detail::raiseBadParcel(parcel, "changes the object " + std::to_string(entry.object.value) +
-                                           ", which is no ghost from there.");
+        detail::raiseBadParcel(parcel, "changes object " + std::to_string(entry.object.value) +
+                                           ", which is not a ghost of that rank here. Pass each "
+                                           "parcel to finish() once, in its frame.");
     }
     const bool isRemoved = (entry.kind & kEntryRemoved) != 0;
     keepBefore(id.index);
@@ -325,7 +337,8 @@ void RankGrid<Scalar>::takeNew(const Parcel& parcel, const Entry& entry) {
     if (const ProxyId known = find(entry.object); !known.isNull()) {
         throw RankError("The global id " + std::to_string(entry.object.value) +
                         " names two objects, one on rank " + std::to_string(homeOf(known)) +
-                        " and one on rank " + std::to_string(parcel.rank) + ".");
+                        " and one on rank " + std::to_string(parcel.rank) +
+                        ". Give each object an id of its own.");
     }
     const ProxyId id = addProxy(entry.object, entry.now, entry.groups);
     marks_[id.index] = static_cast<std::uint16_t>(kNew | kHasBefore |

@@ -82,7 +82,7 @@ std::array<NamedSetting, 11> settingsOf(const DistributedConfig& config,
              {"DistributedConfig::rebalanceAbove", config.rebalanceAbove},
              {"DistributedConfig::patience", config.patience},
              {"the number of ranks of the partition", partitionRanks},
-             {"the partition (a number made of its cuts)", cutHash},
+             {"the partition (a hash of its cuts)", cutHash},
              {"the version of the messages", 1}}};
 }
 
@@ -113,7 +113,8 @@ DistributedGrid<Scalar>::DistributedGrid(MPI_Comm communicator, const Partition<
     agree(config, partition);
     if (!(config.rebalanceAbove >= 1) || !(config.patience >= 0)) {
         detail::raiseInvalidArgument(
-            "rebalanceAbove must be 1 or more, and patience 0 s or more; they are " +
+            "DistributedConfig: rebalanceAbove must be 1 or more, and patience 0 s or more, but "
+            "they are " +
             asText(config.rebalanceAbove) + " and " + asText(config.patience) + ".");
     }
     try {
@@ -123,7 +124,8 @@ DistributedGrid<Scalar>::DistributedGrid(MPI_Comm communicator, const Partition<
         here_.emplace(ranks_.rank(), partition != nullptr ? *partition : Partition<Scalar>(cuts),
                       config.rankGrid);
     } catch (const std::bad_alloc&) {  // what else is thrown, all ranks throw
-        ranks_.fail("There is not enough memory for its part of the grid.");
+        ranks_.fail(
+            "Its part of the grid does not fit into memory. Use more ranks, or free memory.");
     }
     isFirstToCut_ = partition == nullptr && ranks_.count() > 1;
 }
@@ -131,9 +133,10 @@ DistributedGrid<Scalar>::DistributedGrid(MPI_Comm communicator, const Partition<
 template <class Scalar>
 DistributedGrid<Scalar>::~DistributedGrid() {
     if (std::uncaught_exceptions() > exceptionsAtFirst_) {
-        ranks_.tellFailure("It was left by an exception.");
+        ranks_.tellFailure(
+            "An exception of the program destroyed its grid. See the output of that rank.");
     } else if (isBegun_) {
-        ranks_.tellFailure("Its grid was destroyed between begin() and end().");
+        ranks_.tellFailure("Its grid was destroyed between begin() and end(). Call end() first.");
     }
     if (!detail::Ranks::isMpiReady()) {
         return;
@@ -164,17 +167,19 @@ void DistributedGrid<Scalar>::agree(const DistributedConfig& config,
     ranks_.check(MPI_Iallreduce(MPI_IN_PLACE, least.data(), static_cast<int>(least.size()),
                                 MPI_DOUBLE, MPI_MIN, ranks_.communicator(), &request),
                  "MPI_Iallreduce");
-    ranks_.wait(request, buffer, "for all ranks to say their configuration");
+    ranks_.wait(request, buffer, "for the configurations of all ranks");
     for (std::size_t i = 0; i < settings.size(); ++i) {
         if (least[2 * i] != -least[2 * i + 1]) {
-            throw RankError(std::string("The ranks disagree on ") + settings[i].name + ": from " +
-                            asText(least[2 * i]) + " to " + asText(-least[2 * i + 1]) +
-                            "; here it is " + asText(settings[i].value) + ".");
+            throw RankError(std::string("The ranks disagree on ") + settings[i].name +
+                            ": it is from " + asText(least[2 * i]) + " to " +
+                            asText(-least[2 * i + 1]) + ", and here " + asText(settings[i].value) +
+                            ". Set the same on all ranks.");
         }
     }
     if (partition != nullptr && partition->rankCount() != ranks_.count()) {
-        throw RankError("The partition is of " + std::to_string(partition->rankCount()) +
-                        " ranks; there are " + std::to_string(ranks_.count()) + ".");
+        throw RankError("The partition has " + std::to_string(partition->rankCount()) +
+                        " ranks, but the communicator has " + std::to_string(ranks_.count()) +
+                        ". Make a partition for that number.");
     }
 }
 
@@ -186,16 +191,16 @@ void DistributedGrid<Scalar>::checkUse(bool isBegun) {
         throw RankError(ranks_.failure());
     }
     if (isBegun != isBegun_) {
-        ranks_.fail(isBegun ? "It has called end() without begin()."
-                            : "It has called begin(), ask(), sendHome() or pairSum() between "
-                              "begin() and end().");
+        ranks_.fail(isBegun ? "It called end() without begin(). Call begin() first."
+                            : "It called begin(), ask(), sendHome() or pairSum() between begin() "
+                              "and end(). Call end() first.");
     }
 }
 
 template <class Scalar>
 void DistributedGrid<Scalar>::checkUpToDate() {
     if (!here_->isUpToDate()) {
-        ranks_.fail("It has called ask() or pairSum() after a change, before update().");
+        ranks_.fail("It called ask() or pairSum() after a change. Call update() first.");
     }
 }
 
@@ -257,7 +262,8 @@ RankChanges DistributedGrid<Scalar>::end(ParallelFor parallelFor) {
 
 template <class Scalar>
 void DistributedGrid<Scalar>::setLoad(std::optional<double> load) {
-    HASHPHASE_ASSERT(!load || *load >= 0, "A load is not negative.");
+    HASHPHASE_ASSERT(!load || *load >= 0,
+                     "DistributedGrid::setLoad(): the load is negative or NaN. Pass 0 or more.");
     if (!load || *load >= 0) {
         givenLoad_ = load;
     }
@@ -401,7 +407,7 @@ std::span<const Contribution> DistributedGrid<Scalar>::sendHome(
     std::span<const Contribution> forGhosts) {
     return together(false, [&] {
         exchange_.start(contributions_.pack(*here_, forGhosts));
-        exchange_.finish("for what other ranks send home");
+        exchange_.finish("for the contributions of all ranks");
         return contributions_.finish(*here_, exchange_.received());
     });
 }

@@ -26,10 +26,14 @@ bool Ranks::isMpiReady() noexcept {
 
 Ranks::Ranks(MPI_Comm communicator, double seconds) : seconds_(seconds) {
     if (!isMpiReady()) {
-        throw RankError("A grid over MPI lives between MPI_Init() and MPI_Finalize().");
+        throw RankError(
+            "DistributedGrid: MPI is not running. Make the grid after MPI_Init() and before "
+            "MPI_Finalize().");
     }
     if (communicator == MPI_COMM_NULL) {
-        throw RankError("A grid over MPI needs a communicator; this is MPI_COMM_NULL.");
+        throw RankError(
+            "DistributedGrid: the communicator is MPI_COMM_NULL. Pass the communicator of the "
+            "ranks that share the grid.");
     }
     restartClock();
     int rank = 0;
@@ -86,8 +90,9 @@ void Ranks::idle(const char* doing) {
     listen();
     const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - since_;
     if (seconds_ > 0 && waited.count() > seconds_) {
-        fail("It has waited " + std::to_string(static_cast<int>(waited.count())) + " s " + doing +
-             ": another rank has stopped, is slow, or has not made the same calls.");
+        fail("It waited " + std::to_string(static_cast<int>(waited.count())) + " s " + doing +
+             ". Another rank stopped, is slow, or made other calls: see its output, or raise "
+             "DistributedConfig::patience.");
     }
     std::this_thread::yield();
 }

@@ -15,7 +15,8 @@ SparseExchange::~SparseExchange() {
 }
 
 void SparseExchange::start(std::span<const Parcel> parcels) {
-    HASHPHASE_ASSERT(!isUnderWay_, "One exchange ends before the next one begins.");
+    HASHPHASE_ASSERT(!isUnderWay_,
+                     "SparseExchange::start() was called during an exchange. Call finish() first.");
     ++number_;
     isUnderWay_ = true;
     Buffers& buffers = *buffers_;

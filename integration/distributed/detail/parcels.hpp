@@ -20,10 +20,10 @@ void beginParcel(ByteWriter& writer, std::uint32_t magic);
 void sealParcel(ByteWriter& writer) noexcept;
 
 /// Returns what follows. Throws RankError where the parcel does not begin so, or has another number of bytes than it
-/// says: "What rank 3 has sent `isNot`", such as "are no questions of this version."
+/// says: "The parcel from rank 3 `isNot`", such as "is not from RankQuestions::pack() of this version."
 [[nodiscard]] ByteReader openParcel(const Parcel& parcel, std::uint32_t magic, const char* isNot);
 
-/// Throws RankError: "What rank 3 has sent `fault`".
+/// Throws RankError: "The parcel from rank 3 `fault`".
 [[noreturn]] void raiseBadParcel(const Parcel& parcel, const std::string& fault);
 
 }  // namespace hashphase::detail

@@ -64,11 +64,11 @@ TEST_F(Parcels, AreTakenAsTheyWereSent) {
 TEST_F(Parcels, ThatLieAboutTheirLengthAreRefused) {
     auto longer = bytes_;
     longer.push_back(std::byte{0});
-    EXPECT_NE(std::string::npos, complaint(longer).find("What rank 0 has sent says that it has"));
+    EXPECT_NE(std::string::npos, complaint(longer).find("The parcel from rank 0 had "));
     auto lying = longer;
     const std::uint64_t size = lying.size();
     std::memcpy(lying.data() + 4, &size, sizeof(size));
-    EXPECT_NE(std::string::npos, complaint(lying).find("goes on for 1 bytes"));
+    EXPECT_NE(std::string::npos, complaint(lying).find("has 1 bytes after its last entry"));
     std::uint32_t count = 1'000'000;
     lying = bytes_;
     std::memcpy(lying.data() + 20, &count, sizeof(count));
@@ -86,7 +86,10 @@ TEST_F(Parcels, ThatEndEarlyAreRefused) {
 TEST_F(Parcels, OfAnotherFrameAreRefused) {
     std::uint64_t frame = 7;
     std::memcpy(bytes_.data() + 12, &frame, sizeof(frame));
-    EXPECT_EQ("What rank 0 has sent is of frame 7; this is frame 0.", complaint(bytes_));
+    EXPECT_EQ(
+        "The parcel from rank 0 is of frame 7, but this is frame 0. Call pack() and finish() "
+        "equally often on all ranks.",
+        complaint(bytes_));
 }
 
 TEST_F(Parcels, WithAnyByteChangedAreRefusedOrTakenAndNeverCrash) {
@@ -117,7 +120,7 @@ TEST_F(Parcels, AboutObjectsThatAreNotThereAreRefused) {
     EXPECT_NE(std::string::npos, complaint(bytes_).find("frame"));
     std::uint64_t frame = 0;
     std::memcpy(bytes_.data() + 12, &frame, sizeof(frame));
-    EXPECT_NE(std::string::npos, complaint(bytes_).find("which is no ghost from there."));
+    EXPECT_NE(std::string::npos, complaint(bytes_).find("which is not a ghost of that rank here."));
 }
 
 TEST_F(Parcels, OfOneIdOnTwoRanksAreRefused) {
@@ -129,9 +132,9 @@ TEST_F(Parcels, OfOneIdOnTwoRanksAreRefused) {
         receiver.finish(std::span(&parcel, 1));
         FAIL() << "took both";
     } catch (const RankError& error) {
-        EXPECT_EQ(
-            std::string("The global id 19 names two objects, one on rank 1 and one on rank 0."),
-            error.what());
+        EXPECT_EQ(std::string("The global id 19 names two objects, one on rank 1 and one on rank "
+                              "0. Give each object an id of its own."),
+                  error.what());
     }
 }
 
