@@ -177,7 +177,7 @@ function(hashphase_import_bullet component)
         endif()
     endforeach()
     if(NOT hashphase_FIND_QUIETLY)
-        message(STATUS "hashphase: no hashphase::${component}, because Bullet 3.05 or newer in "
-                       "${precision} precision was not found")
+        message(STATUS "hashphase: hashphase::${component} is left out, because Bullet 3.05 or newer in "
+                       "${precision} precision was not found (Debian, Ubuntu: install libbullet-dev)")
     endif()
 endfunction()

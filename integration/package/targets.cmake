@@ -7,7 +7,8 @@ include(CheckLinkerFlag)
 include(GNUInstallDirs)
 
 if(MSVC AND MSVC_VERSION LESS 1930)
-    message(FATAL_ERROR "hashphase needs Visual Studio 2022 or newer.")
+    message(FATAL_ERROR "hashphase needs Visual Studio 2022 or newer, but MSVC_VERSION is ${MSVC_VERSION}. Use a "
+                        "newer compiler.")
 endif()
 
 # The run-time libraries of MSVC for Debug and for the rest do not mix: one folder has room for both of ours.
@@ -237,7 +238,7 @@ function(hashphase_enable_sanitizers)
     elseif(HASHPHASE_SANITIZE STREQUAL "thread")
         set(flags -fsanitize=thread)
     elseif(HASHPHASE_SANITIZE)
-        message(FATAL_ERROR "HASHPHASE_SANITIZE is \"${HASHPHASE_SANITIZE}\", but must be empty, "
+        message(FATAL_ERROR "hashphase: HASHPHASE_SANITIZE is \"${HASHPHASE_SANITIZE}\", but must be empty, "
                             "address or thread.")
     else()
         return()
