@@ -7,8 +7,8 @@
 // Errors    A message handler must not throw. An assertion handler may throw, to escape from misuse.
 // Messages  Bad data, such as a box with a NaN, is set aside and reported once, in a sentence. By default, on stderr.
 // Misuse    A broken precondition is asserted. The default handler writes the sentence and source line to stderr, and
-//           aborts. Assertions exist if HASHPHASE_ENABLE_ASSERTS is 1: in all build types except Release and
-//           MinSizeRel, unless CMake's HASHPHASE_ASSERTS is ON or OFF.
+//           aborts. Assertions exist if HASHPHASE_ENABLE_ASSERTS is 1: in all build types except Release,
+//           MinSizeRel and none, unless CMake's HASHPHASE_ASSERTS is ON or OFF.
 
 #include <broadphase/export.hpp>
 

@@ -26,10 +26,38 @@ else()
     set(HASHPHASE_COMPATIBILITY SameMajorVersion)
 endif()
 
+# A project that takes us in by add_subdirectory() or FetchContent, and sets neither a build type nor a level of
+# optimisation, would get libraries that are unoptimised and check preconditions, at many times the cost. They are
+# compiled as in a Release build instead.
+get_directory_property(options COMPILE_OPTIONS)
+set(levelOption "(^|[ ;])-O")
+if(MSVC)
+    set(levelOption "(^|[ ;])[-/]O")
+endif()
+set(HASHPHASE_OPTIMISATION "")
+if(NOT multiConfig AND NOT CMAKE_BUILD_TYPE AND NOT "${CMAKE_CXX_FLAGS} ${options}" MATCHES "${levelOption}")
+    set(HASHPHASE_OPTIMISATION -O2)
+    if(MSVC)
+        set(HASHPHASE_OPTIMISATION /O2)
+    endif()
+    set(assertions "without assertions")
+    if(HASHPHASE_ASSERTS STREQUAL "AUTO")
+        set(HASHPHASE_ASSERTS OFF)
+    elseif(HASHPHASE_ASSERTS)
+        set(assertions "with assertions")
+    endif()
+    message(
+        WARNING "hashphase: CMAKE_BUILD_TYPE is empty. The hashphase libraries are compiled with "
+                "${HASHPHASE_OPTIMISATION} and ${assertions}. Your own files, with the hashphase templates that "
+                "they use, are compiled without optimisation. Set the type: cmake -DCMAKE_BUILD_TYPE=Release, or "
+                "RelWithDebInfo, or Debug.")
+endif()
+
 # Warnings, reproducible floating point and plain C++20 for a target of our own. The headers of
 # Bullet, Eigen and GoogleTest come from imported targets and count as system headers.
 function(hashphase_own_target target)
     target_compile_features(${target} PUBLIC cxx_std_20)
+    target_compile_options(${target} PRIVATE ${HASHPHASE_OPTIMISATION})
     # For shared libraries, where there are any.
     get_property(isShareable GLOBAL PROPERTY TARGET_SUPPORTS_SHARED_LIBS)
     set_target_properties(
