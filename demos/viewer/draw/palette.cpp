@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/draw/palette.hpp>
 
-#include <algorithm>
+#include <integration/bullet/detail/sequential_ramp.hpp>
+
 #include <cmath>
 
 namespace hashphase::demos {
@@ -96,26 +97,9 @@ Colour kindColour(Theme theme, std::size_t kind) {
 }
 
 Colour sequentialColour(float share) {
-    // Cividis at nine even steps; between them, colours are mixed.
-    static constexpr std::array<Colour, 9> kSteps{{{0, 34, 78},
-                                                   {26, 56, 111},
-                                                   {67, 78, 108},
-                                                   {97, 101, 110},
-                                                   {125, 124, 120},
-                                                   {156, 149, 119},
-                                                   {189, 176, 108},
-                                                   {224, 205, 88},
-                                                   {254, 232, 56}}};
-    const float place = std::clamp(share, 0.0F, 1.0F) * (kSteps.size() - 1);
-    const auto lower = std::min(static_cast<std::size_t>(place), kSteps.size() - 2);
-    const float weight = place - static_cast<float>(lower);
-    const auto mix = [weight](std::uint8_t from, std::uint8_t to) {
-        return static_cast<std::uint8_t>(
-            std::lround(static_cast<float>(from) + weight * static_cast<float>(to - from)));
-    };
-    const Colour& a = kSteps[lower];
-    const Colour& b = kSteps[lower + 1];
-    return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
+    const auto [red, green, blue] = detail::sequentialRgb(share);
+    const auto rounded = [](float value) { return static_cast<std::uint8_t>(std::lround(value)); };
+    return {rounded(red), rounded(green), rounded(blue)};
 }
 
 }  // namespace hashphase::demos

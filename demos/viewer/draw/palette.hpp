@@ -3,9 +3,8 @@
 
 // Colours that people can tell apart whatever they see of red and green.
 //
-// The qualitative colours follow M. Okabe and K. Ito, "Color Universal Design", 2008, and the
-// sequential ramp follows J. R. Nuñez, C. R. Anderton and R. S. Renslow, "Optimizing colormaps with
-// consideration for color vision deficiency", 2018 (cividis): its lightness grows evenly.
+// The qualitative colours follow M. Okabe and K. Ito, "Color Universal Design", 2008; for the
+// sequential ones see integration/bullet/detail/sequential_ramp.hpp.
 
 #include <demos/viewer/draw/picture.hpp>
 

@@ -2,6 +2,7 @@
 #include <demos/viewer/session/stage_queries.hpp>
 
 #include <broadphase/proxy_filter.hpp>
+#include <integration/bullet/detail/sequential_ramp.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,7 @@ CellLoads::CellLoads(const Grid<float>& grid, const Aabb<float>& bounds) {
             largest = std::max(largest, ++counts[*cell]);
         }
     });
-    full = std::max(largest, 8U);
+    full = std::max(largest, detail::kFullLoad);
     shades.resize(counts.size());
     std::ranges::transform(counts, shades.begin(), [this](std::uint32_t load) {
         return static_cast<std::uint8_t>(load * 255 / full);
