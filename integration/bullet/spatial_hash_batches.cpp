@@ -10,6 +10,8 @@
 #include <integration/bullet/detail/lone_moves.inl>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <LinearMath/btQuickprof.h>
+
 #include <algorithm>
 #include <atomic>
 #include <iterator>
@@ -41,6 +43,7 @@ void prefetchAhead(std::span<btBroadphaseProxy* const> proxies, std::size_t i) n
 void SpatialHashBroadphase::createProxies(std::span<const ProxyDefinition> definitions,
                                           std::span<btBroadphaseProxy*> proxies,
                                           btDispatcher* dispatcher) {
+    BT_PROFILE("hashphase: create proxies");
     HASHPHASE_ASSERT(definitions.size() == proxies.size(),
                      "createProxies(): definitions and proxies have different lengths. Pass room "
                      "for one proxy for each definition.");
@@ -193,6 +196,7 @@ void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies
                                      std::span<const btVector3> aabbMins,
                                      std::span<const btVector3> aabbMaxs,
                                      btDispatcher* dispatcher) {
+    BT_PROFILE("hashphase: set boxes");
     HASHPHASE_ASSERT(
         proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
         "setAabbs(): proxies and boxes have different lengths. Pass one box for each proxy.");
@@ -262,6 +266,7 @@ void SpatialHashBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> p
         destroyProxies(others, dispatcher);
         return;
     }
+    BT_PROFILE("hashphase: destroy proxies");
     std::vector<int> ids;
     noteIds(proxies, ids);
     checkNamedOnce(ids);

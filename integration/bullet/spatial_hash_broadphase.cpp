@@ -13,6 +13,7 @@
 #include <integration/bullet/pair_cache.hpp>
 
 #include <LinearMath/btGeometryUtil.h>
+#include <LinearMath/btQuickprof.h>
 
 #include <algorithm>
 #include <atomic>
@@ -235,7 +236,12 @@ void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) 
     if (isCacheBehind_) {  // all of it is read: what this frees first is freed before pairs are listed
         static_cast<void>(pairCache_->getOverlappingPairArray());
     }
-    const PairChanges changes = updatePairs();
+    PairChanges changes;
+    {
+        BT_PROFILE("hashphase: update pairs");
+        changes = updatePairs();
+    }
+    BT_PROFILE("hashphase: pair cache");
     if (isCacheBehind_) {
         catchUp(dispatcher);
     } else {

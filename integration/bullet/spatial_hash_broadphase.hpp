@@ -126,7 +126,7 @@ public:
     /// the two meet again.
     /// Groups and masks may be written at any time. A new pair then begins after a move or setAabb() of one of the
     /// two; a present pair lasts until its boxes part.
-    /// Cost: as Pairs::update(), and the cache for each pair that comes or goes.
+    /// Cost: as Pairs::update(), and the cache for each pair that comes or goes. Enters BT_PROFILE zones.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }

@@ -6,6 +6,7 @@
 #include <integration/bullet/conversions.hpp>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <LinearMath/btQuickprof.h>
 
 #include <algorithm>
 #include <iterator>
@@ -210,6 +211,7 @@ void WorldsBroadphase::resetPool(btDispatcher* dispatcher) {
 void WorldsBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies,
                                 std::span<const btVector3> aabbMins,
                                 std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher) {
+    BT_PROFILE("hashphase: set boxes");
     HASHPHASE_ASSERT(
         proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
         "setAabbs(): proxies and boxes have different lengths. Pass one box for each proxy.");
@@ -226,6 +228,7 @@ void WorldsBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies,
 // All pairs at once: the cache may pass over those of all worlds.
 void WorldsBroadphase::destroyProxies(std::span<btBroadphaseProxy* const> proxies,
                                       btDispatcher* dispatcher) {
+    BT_PROFILE("hashphase: destroy proxies");
     std::vector<btBroadphaseProxy*> alive;
     std::copy_if(proxies.begin(), proxies.end(), std::back_inserter(alive),
                  [this](btBroadphaseProxy* proxy) {

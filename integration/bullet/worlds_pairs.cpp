@@ -7,6 +7,8 @@
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/on_failure.hpp>
 
+#include <LinearMath/btQuickprof.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -22,6 +24,7 @@ void WorldsBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
         static_cast<void>(pairCache_->getOverlappingPairArray());
     }
     updateWorlds();
+    BT_PROFILE("hashphase: pair cache");
     applyChanges(dispatcher);
     for (const Updated& each : updated_) {
         each.world->endCalculation(dispatcher);
@@ -50,6 +53,7 @@ bool WorldsBroadphase::areAnyBehind() const noexcept {
 
 // What others are to see, as a filter callback, is seen on the caller's thread.
 void WorldsBroadphase::updateWorlds() {
+    BT_PROFILE("hashphase: update pairs");
     constexpr std::size_t kGrain = 8;
     const detail::OnFailure fallBehind([&] { setBehind(); });
     const auto update = [this](std::size_t begin, std::size_t end) {
