@@ -9,10 +9,8 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hashphase)
 set(CPACK_PACKAGE_VENDOR "the hashphase authors")
-set(HASHPHASE_PACKAGE_MAINTAINER "the hashphase authors <hashphase@example.org>" CACHE STRING
-    "Who maintains the packages: a name <and an address>")
-mark_as_advanced(HASHPHASE_PACKAGE_MAINTAINER)
-set(CPACK_PACKAGE_CONTACT "${HASHPHASE_PACKAGE_MAINTAINER}")
+include(${CMAKE_CURRENT_LIST_DIR}/maintainer.cmake)
+hashphase_find_maintainer(${PROJECT_SOURCE_DIR} CPACK_PACKAGE_CONTACT)  # cpack makes no packages without
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "spatial-hash broadphase for the Bullet physics engine")
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_STRIP_FILES ON)
