@@ -7,8 +7,8 @@
 //         broadphase, in any order.
 
 #include <demos/compare/broadphase_kind.hpp>
-#include <demos/compare/profile_zones.hpp>
 #include <demos/compare/reference_pairs.hpp>
+#include <demos/report/profile_zones.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/terrain.hpp>
 #include <demos/scenes/world_contents.hpp>

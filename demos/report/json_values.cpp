@@ -88,9 +88,14 @@ std::string jsonInScript(const Json& json) {
 }
 
 Json provenanceJson(const Provenance& provenance) {
-    return {{"hashphase", provenance.hashphaseVersion},
+    return {{"date", provenance.date},
+            {"hashphase", provenance.hashphaseVersion},
+            {"commit", provenance.commit},
             {"bullet", provenance.bulletVersion},
             {"precision", provenance.precision},
+            {"bulletThreads", provenance.hasBulletThreads},
+            {"bulletProfileZones", provenance.hasBulletProfileZones},
+            {"bulletPackage", orNull(provenance.bulletPackage)},
             {"compiler", provenance.compiler},
             {"compilerFlags", orNull(provenance.compilerFlags)},
             {"programFlags", orNull(provenance.programFlags)},
@@ -99,6 +104,7 @@ Json provenanceJson(const Provenance& provenance) {
             {"buildType", orNull(provenance.buildType)},
             {"forMeasuring", provenance.isForMeasuring},
             {"instructionSet", provenance.instructionSet},
+            {"operatingSystem", provenance.operatingSystem},
             {"cpu", provenance.cpu},
             {"cores", provenance.cores},
             {"loadAverage", orNull(provenance.loadAverage)},

@@ -155,7 +155,10 @@ private:
     }
 
     void writeTop() const {
-        const std::string caution = cautionOf(page_.provenance);
+        std::string cautions;
+        for (const std::string& caution : cautionsOf(page_.provenance)) {
+            cautions += paragraph(caution, "verdict unchecked");
+        }
         const std::string onCharts =
             hasCharts() ? tag("noscript",
                               tag("p class=\"quiet\"",
@@ -166,8 +169,7 @@ private:
                                         " This page has the numbers of all charts as tables.",
                                     "quiet");
         out_ << tag("header", '\n' + heading(1, page_.title) + '\n' +
-                                  paragraph(page_.introduction) + verdictOf(page_) +
-                                  (caution.empty() ? "" : paragraph(caution, "verdict unchecked")) +
+                                  paragraph(page_.introduction) + verdictOf(page_) + cautions +
                                   onCharts)
              << '\n';
     }
@@ -232,6 +234,9 @@ private:
              << heading(2, part.title) << '\n'
              << paragraph(part.introduction) << verdictOf(part);
         if (!part.provenance.commandLine.empty()) {
+        if (const std::string overload = overloadSentence(part.provenance); !overload.empty()) {
+            out_ << paragraph(overload, "verdict unchecked");
+        }
             out_ << tag("p class=\"quiet\"",
                         "This part alone: " + tag("code", escaped(part.provenance.commandLine)))
                  << '\n';

@@ -101,8 +101,8 @@ struct Page {
     Provenance provenance;
 
     /// Pages that follow the sections, each with its verdict. They have no parts of their own, and of
-    /// their provenance only the command is written. Their tabs, of other names than the page's, stand
-    /// beside its report.
+    /// their provenance only the command and an overload are written. Their tabs, of other names than
+    /// the page's, stand beside its report.
     std::vector<Page> parts = {};
 
     std::vector<PageTab> tabs = {};  // after that of the report itself

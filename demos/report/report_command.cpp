@@ -111,7 +111,11 @@ private:
             notChecked_.push_back(name);
             inShort_.conclusions.push_back("Not checked: " + done.verdict + " (" + evidence + ")");
         }
-        console_.out << name << ": " << done.verdict << '\n' << std::flush;
+        console_.out << name << ": " << done.verdict << '\n';
+        if (const std::string overload = overloadSentence(done.provenance); !overload.empty()) {
+            console_.out << overload << '\n';
+        }
+        console_.out << std::flush;
     }
 
     // A part that cannot go on has not shown what it was to show.
@@ -180,8 +184,7 @@ int runReport(const std::vector<ReportPart>& parts, const ReportOptions& options
     const Page page = ReportRun(std::move(chosen), options, console).run();
     deliverPage(page, file, console);
     console.out << page.verdict << " The page is " << options.htmlFile << ".\n";
-    const std::string caution = cautionOf(page.provenance);
-    if (!caution.empty()) {
+    for (const std::string& caution : cautionsOf(page.provenance)) {
         console.out << caution << '\n';
     }
     return page.holds.value_or(false) ? kExitOk : kExitCheckFailed;

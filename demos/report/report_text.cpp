@@ -6,8 +6,21 @@
 #include <algorithm>
 #include <ostream>
 #include <sstream>
+#include <utility>
 
 namespace hashphase::demos {
+namespace {
+
+/// "3.24, single precision, without threads, with profile zones, libbullet3.24 3.24+dfsg-2"
+std::string bulletText(const Provenance& provenance) {
+    const auto with = [](bool has) { return std::string(has ? ", with " : ", without "); };
+    return provenance.bulletVersion + ", " + provenance.precision + " precision" +
+           with(provenance.hasBulletThreads) + "threads" + with(provenance.hasBulletProfileZones) +
+           "profile zones" +
+           (provenance.bulletPackage.empty() ? "" : ", " + provenance.bulletPackage);
+}
+
+}  // namespace
 
 std::string ratioText(const std::optional<double>& ratio) {
     return ratio ? fixed(*ratio, *ratio < 10 ? 2 : 1) + "x" : "-";
@@ -45,19 +58,20 @@ DataTable provenanceTable(const Provenance& provenance) {
             "also " +
             provenance.programFlags;
     }
-    DataTable table{
-        {{"what"}, {"value"}},
-        {{"hashphase", provenance.hashphaseVersion},
-         {"Bullet", provenance.bulletVersion + ", " + provenance.precision + " precision"},
-         {"compiler", provenance.compiler},
-         {"its flags", flags},
-         {"build",
-          provenance.buildType +
-              (provenance.isForMeasuring ? ", for measuring" : ", for tests: times mean little")},
-         {"assertions", provenance.hasAssertions ? "on" : "off"},
-         {"processor", provenance.cpu},
-         {"instructions that hashphase uses", provenance.instructionSet},
-         {"cores", std::to_string(provenance.cores)}}};
+    DataTable table{{{"what"}, {"value"}},
+                    {{"date (UTC)", provenance.date},
+                     {"hashphase", provenance.hashphaseVersion + ", commit " + provenance.commit},
+                     {"Bullet", bulletText(provenance)},
+                     {"compiler", provenance.compiler},
+                     {"its flags", flags},
+                     {"build", provenance.buildType + (provenance.isForMeasuring
+                                                           ? ", for measuring"
+                                                           : ", for tests: times mean little")},
+                     {"assertions", provenance.hasAssertions ? "on" : "off"},
+                     {"operating system", provenance.operatingSystem},
+                     {"processor", provenance.cpu},
+                     {"instructions that hashphase uses", provenance.instructionSet},
+                     {"cores", std::to_string(provenance.cores)}}};
     if (provenance.loadAverage) {
         const auto& [one, five, fifteen] = *provenance.loadAverage;
         table.add({"load over 1, 5, 15 minutes before",
@@ -65,18 +79,6 @@ DataTable provenanceTable(const Provenance& provenance) {
     }
     table.add({"command", provenance.commandLine});
     return table;
-}
-
-std::string cautionOf(const Provenance& provenance) {
-    if (provenance.isForMeasuring) {
-        return {};
-    }
-    return "Times mean little: this program is built for tests (" + provenance.buildType +
-           ", assertions " + (provenance.hasAssertions ? "on" : "off") +
-           (provenance.programFlags.empty()
-                ? ""
-                : ", what hashphase is compared with optimised less than hashphase itself") +
-           "). Measure with the build that demos/run makes.";
 }
 
 std::string overloadText(const Provenance& provenance) {
@@ -87,18 +89,39 @@ std::string overloadText(const Provenance& provenance) {
                : std::string();
 }
 
-void printProvenance(const Provenance& provenance, std::ostream& out) {
-    out << "hashphase " << provenance.hashphaseVersion << ", Bullet " << provenance.bulletVersion
-        << " (" << provenance.precision << " precision), " << provenance.compiler << ", "
-        << provenance.cpu << ", " << provenance.cores << " cores, one thread, "
-        << provenance.instructionSet << " instructions\n";
-    const std::string caution = cautionOf(provenance);
-    if (!caution.empty()) {
-        out << caution << '\n';
+std::string overloadSentence(const Provenance& provenance) {
+    const std::string overload = overloadText(provenance);
+    return overload.empty() ? overload
+                            : "Other programs kept the processor busy (" + overload +
+                                  "), so the times are too long.";
+}
+
+std::vector<std::string> cautionsOf(const Provenance& provenance) {
+    std::vector<std::string> cautions;
+    if (!provenance.isForMeasuring) {
+        cautions.push_back("Times mean little: this program is built for tests (" +
+                           provenance.buildType + ", assertions " +
+                           (provenance.hasAssertions ? "on" : "off") +
+                           (provenance.programFlags.empty()
+                                ? ""
+                                : ", what hashphase is compared with optimised less than "
+                                  "hashphase itself") +
+                           "). Measure with the build that demos/run makes.");
     }
-    if (const std::string overload = overloadText(provenance); !overload.empty()) {
-        out << "Other programs kept the processor busy (" << overload
-            << "), so the times are too long.\n";
+    if (std::string overload = overloadSentence(provenance); !overload.empty()) {
+        cautions.push_back(std::move(overload));
+    }
+    return cautions;
+}
+
+void printProvenance(const Provenance& provenance, std::ostream& out) {
+    out << "hashphase " << provenance.hashphaseVersion << " (" << provenance.commit << "), "
+        << provenance.compiler << ", " << provenance.cpu << ", " << provenance.cores
+        << " cores, one thread, " << provenance.instructionSet << " instructions\n"
+        << "Bullet " << bulletText(provenance) << "; " << provenance.operatingSystem << ", "
+        << provenance.date << '\n';
+    for (const std::string& caution : cautionsOf(provenance)) {
+        out << caution << '\n';
     }
 }
 

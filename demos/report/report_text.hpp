@@ -32,14 +32,17 @@ namespace hashphase::demos {
 /// All of it, a row each.
 [[nodiscard]] DataTable provenanceTable(const Provenance& provenance);
 
-/// A sentence that begins "Times mean little"; empty for a build that is meant for measuring.
-[[nodiscard]] std::string cautionOf(const Provenance& provenance);
-
 /// "load 3.7 on 2 cores", where programs wanted more cores than there are; else empty.
 [[nodiscard]] std::string overloadText(const Provenance& provenance);
 
-/// A line with versions, compiler and processor, and warnings where times mean little: in a build for
-/// tests, or when the processor was busy.
+/// A sentence that holds overloadText(); empty where that is.
+[[nodiscard]] std::string overloadSentence(const Provenance& provenance);
+
+/// Why times are not to be trusted, a sentence each: of a build for tests one that begins "Times mean little", and
+/// overloadSentence().
+[[nodiscard]] std::vector<std::string> cautionsOf(const Provenance& provenance);
+
+/// A line with versions, compiler and processor, and cautionsOf().
 void printProvenance(const Provenance& provenance, std::ostream& out);
 
 }  // namespace hashphase::demos

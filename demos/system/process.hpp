@@ -31,6 +31,9 @@ void pinToThisCore() noexcept;
 
 [[nodiscard]] std::string processorName();
 
+/// Its name, release and kind of machine: "Linux 6.1.0-18-amd64 x86_64".
+[[nodiscard]] std::string operatingSystem();
+
 /// How many threads were at work, over 1, 5 and 15 minutes.
 [[nodiscard]] std::optional<std::array<double, 3>> loadAverage() noexcept;
 

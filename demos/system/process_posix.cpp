@@ -9,6 +9,7 @@
 #if HASHPHASE_HAS_AFFINITY
 #include <sched.h>
 #endif
+#include <sys/utsname.h>
 #include <unistd.h>
 
 namespace hashphase::demos {
@@ -57,6 +58,13 @@ std::string processorName() {
         }
     }
     return "unknown";
+}
+
+std::string operatingSystem() {
+    utsname system{};
+    return uname(&system) < 0
+               ? std::string("unknown")
+               : std::string(system.sysname) + ' ' + system.release + ' ' + system.machine;
 }
 
 std::optional<std::array<double, 3>> loadAverage() noexcept {

@@ -71,6 +71,10 @@ std::string processorName() {
     return name != nullptr ? name : "unknown";
 }
 
+std::string operatingSystem() {
+    return "Windows";
+}
+
 std::optional<std::array<double, 3>> loadAverage() noexcept {
     return std::nullopt;
 }

@@ -3,15 +3,21 @@
 #include <demos/report/chart_scripts.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/page.hpp>
+#include <demos/report/profile_zones.hpp>
 #include <demos/report/report_text.hpp>
+#include <demos/system/process.hpp>
 #include <tests/demos/sample_experiments.hpp>
 
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/simd/kernels.hpp>
 
+#include <LinearMath/btThreads.h>
+#include <btBulletDynamicsCommon.h>
+
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <sstream>
 
 namespace hashphase::demos {
@@ -160,6 +166,76 @@ TEST(Page, SaysThatTimesMeanLittleUnlessItWasBuiltForMeasuring) {
     EXPECT_EQ(count(release, "mean little"), 0U);
     EXPECT_EQ(count(release, "<td>-O2</td>"), 1U);
     EXPECT_EQ(count(release, "<td>assertions</td><td>off</td>"), 1U);
+}
+
+TEST(Page, SaysOnTopThatOtherProgramsKeptTheProcessorBusy) {
+    const std::string busy =
+        "Other programs kept the processor busy (load 3.7 on 2 cores), so the "
+        "times are too long.";
+    Page page = samplePage();
+    page.provenance.cores = 2;
+    page.provenance.loadAverage = {2, 0.5, 0.5};
+    EXPECT_EQ(count(withoutScripts(page), "kept the processor busy"), 0U);
+    page.provenance.loadAverage = {3.7, 0.5, 0.5};
+    const std::string html = withoutScripts(page);
+    EXPECT_LT(html.find(busy), html.find("</header>"));
+
+    Page joined = samplePage();
+    joined.parts = {page, samplePage()};
+    const std::string all = withoutScripts(joined);
+    EXPECT_EQ(count(all, busy), 1U);
+    EXPECT_GT(all.find(busy), all.find("id=\"part-1\""));
+    EXPECT_LT(all.find(busy), all.find("id=\"part-1-section-0\""));
+    std::ostringstream text;
+    printProvenance(page.provenance, text);
+    EXPECT_EQ(count(text.str(), busy), 1U) << "on the terminal, too";
+}
+
+TEST(Provenance, IsOfADateASystemACommitAndABullet) {
+    EXPECT_EQ(utcText(std::chrono::system_clock::time_point(std::chrono::seconds(1'764'421'507))),
+              "2025-11-29T13:05:07Z");
+    const Provenance provenance = gatherProvenance("command");
+    const Json json = provenanceJson(provenance);
+    EXPECT_EQ(json["date"].get<std::string>().size(), 20U);
+    EXPECT_EQ(json["operatingSystem"], operatingSystem());
+    EXPECT_EQ(json["commit"], sourceCommit());
+    EXPECT_FALSE(json["commit"].get<std::string>().empty());
+    EXPECT_TRUE(json["bulletThreads"].is_boolean());
+    EXPECT_EQ(json["bullet"], provenance.bulletVersion) << "as before";
+
+    Provenance known;
+    known.date = "2025-11-29T13:05:07Z";
+    known.operatingSystem = "Linux 6.1.0 x86_64";
+    known.hashphaseVersion = "1.2.3";
+    known.commit = "1a2b3c4d-dirty";
+    known.bulletVersion = "3.24";
+    known.precision = "single";
+    known.hasBulletProfileZones = true;
+    known.bulletPackage = "libbullet3.24 3.24+dfsg-2";
+    const std::string bullet =
+        "3.24, single precision, without threads, with profile zones, libbullet3.24 3.24+dfsg-2";
+    std::ostringstream text;
+    std::ostringstream table;
+    printProvenance(known, text);
+    writeTable(provenanceTable(known), table);
+    for (const char* part : {"1a2b3c4d-dirty", "Linux 6.1.0 x86_64", "2025-11-29T13:05:07Z"}) {
+        EXPECT_EQ(count(text.str(), part), 1U) << part;
+        EXPECT_EQ(count(table.str(), part), 1U) << part;
+    }
+    EXPECT_EQ(count(text.str(), bullet), 1U) << text.str();
+    EXPECT_EQ(count(table.str(), "<td>" + bullet + "</td>"), 1U) << table.str();
+}
+
+// As the library itself does.
+TEST(Provenance, SaysWhetherBulletHasProfileZonesAndThreads) {
+    const Provenance provenance = gatherProvenance("command");
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btDiscreteDynamicsWorld world(&dispatcher, &broadphase, nullptr, &configuration);
+    EXPECT_EQ(provenance.hasBulletProfileZones,
+              !profileZonesOf([&] { world.performDiscreteCollisionDetection(); }).empty());
+    EXPECT_EQ(provenance.hasBulletThreads, btCreateDefaultTaskScheduler() != nullptr);
 }
 
 TEST(Provenance, TellsAssertionsAndInstructionsOfThisBuildInTextAndJson) {

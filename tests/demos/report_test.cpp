@@ -154,6 +154,25 @@ TEST(JoinedReport, DoesNotHoldWhereNothingWasChecked) {
     EXPECT_EQ(none.out.find("hold"), std::string::npos) << none.out;
 }
 
+TEST(JoinedReport, SaysDuringWhichPartOtherProgramsKeptTheProcessorBusy) {
+    std::vector<ReportPart> parts = twoParts();
+    parts[1].command.run = [run = parts[1].command.run](Console& console) {
+        const auto take = console.takePage;
+        console.takePage = [&take](Page page) {
+            page.provenance.cores = 2;
+            page.provenance.loadAverage = {5.25, 1, 1};
+            take(page);
+        };
+        return run(console);
+    };
+    const ReportSeen seen = runReport(parts, {});
+    const std::string busy = "Other programs kept the processor busy (load 5.2 on 2 cores)";
+    EXPECT_TRUE(holds(seen.out, "beta: Verdict of beta.\n" + busy));
+    EXPECT_GT(seen.html.find(busy), seen.html.find("<h2>Page of beta</h2>"));
+    EXPECT_LT(seen.html.find(busy),
+              seen.html.find("</article>", seen.html.find("Page of beta</h2>")));
+}
+
 TEST(JoinedReport, GoesOnAfterAPartThatThrows) {
     std::vector<ReportPart> parts = twoParts();
     parts[0].command.run = [](Console&) -> int { throw std::runtime_error("no more <paper>"); };

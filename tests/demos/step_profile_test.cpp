@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/compare/compare_command.hpp>
-#include <demos/compare/profile_zones.hpp>
 #include <demos/compare/report.hpp>
 #include <demos/compare/trial.hpp>
+#include <demos/report/profile_zones.hpp>
 #include <tests/demos/bullet_file.hpp>
 #include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>

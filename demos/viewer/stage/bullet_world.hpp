@@ -6,7 +6,7 @@
 
 #include <demos/compare/broadphase_kind.hpp>
 #include <demos/compare/observed_world.hpp>
-#include <demos/compare/profile_zones.hpp>
+#include <demos/report/profile_zones.hpp>
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/world_scenes.hpp>
 #include <demos/viewer/stage/stage.hpp>

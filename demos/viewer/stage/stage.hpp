@@ -12,8 +12,8 @@
 // Units    metres, seconds
 
 #include <demos/compare/broadphase_kind.hpp>
-#include <demos/compare/profile_zones.hpp>
 #include <demos/compare/reference_pairs.hpp>
+#include <demos/report/profile_zones.hpp>
 #include <demos/viewer/stage/phases.hpp>
 
 #include <integration/effects/observers.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Zlib
-#include <demos/compare/profile_zones.hpp>
+#include <demos/report/profile_zones.hpp>
 
 #include <demos/report/stopwatch.hpp>
 
