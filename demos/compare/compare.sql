@@ -238,7 +238,7 @@ SELECT part AS "part of a step", name, cell FROM step_table;
 
 /* {"chart": "compare-times",
     "title": "Time of a frame: setAabb for all objects, then calculateOverlappingPairs",
-    "settings": "{settings} Medians, with the 5th to 95th percentile.", "mark": "bar",
+    "settings": "{settings} Medians, with the 5th to 95th percentile.", "mark": "point",
     "x": "broadphase names", "y": "frame_ms log", "series": "broadphase", "low": "p5_ms", "high": "p95_ms"} */
 SELECT title AS broadphase, both AS "frame_ms: median [ms a frame]",
        both_low AS "p5_ms: 5th percentile [ms]", both_high AS "p95_ms: 95th percentile [ms]"

@@ -258,6 +258,11 @@ private:
         };
         require("x");
         require("y");
+        if (heading.value("mark", "") == "bar" &&
+            chart.drawn["y"].find(" log") != std::string::npos) {
+            throw std::logic_error("The bars of '" + chart.name +
+                                   "' cannot begin at 0 on a logarithmic axis: draw points.");
+        }
         if (heading.value("mark", "") == "cell") {
             require("shade");
         }

@@ -15,8 +15,8 @@
 //   {"chart": "P4-lost", "title": .., "settings": .., "mark": "bar", "x": "setting names", "y": "lost log"}
 //                                   a chart (charts.js). Marks:
 //                                     line    a line with points a series, in the order of the rows
-//                                     point   points
-//                                     bar     bars side by side; x are names
+//                                     point   points; where x are names, each on a line of its own
+//                                     bar     bars side by side; x are names, and y is linear
 //                                     cell    a heat map: x and y are names; numbers among them grow upwards
 //                                   An axis is a column, of whose title it has its own, and a scale:
 //                                     linear  where none is named
@@ -24,7 +24,7 @@
 //                                     log0    as log, with 0 apart at the lower end
 //                                     names   texts, in the order of the rows
 //     "series": "method"              the column that tells lines, points or bars apart. A method's colour is the
-//                                     same in all charts of a page; "method, variant" has that of the method
+//                                     same on all pages (report/method_looks.js); "method, variant" has it, too
 //     "low": "p5", "high": "p95"      the columns of an error bar around y
 //     "label": "step"                 a column of texts that name single points
 //     "shade": "ns log"               an axis: the colour of cells

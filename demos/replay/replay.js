@@ -251,6 +251,7 @@ class Replay {
         const [inAll, here, listed] = [pairsInAll[frame], pairs[frame], pairsListed[frame]];
         const when = (isSo, text) => (isSo ? text : "");
         const drawn = this.wrong.length;
+        showMethod(this.part(".method"), broadphase.name);
         this.part("output").textContent = `frame ${frame} (0 to ${recording.frames - 1})`;
         const verdict =
             missing + extra === 0

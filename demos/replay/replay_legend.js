@@ -40,6 +40,18 @@ function faultsOfAll({ broadphases }) {
     return ["Wrong pairs, sum of all recorded frames: ", ...each.flat()];
 }
 
+// The method's mark, as in charts; none of a method that has no look of its own.
+const SHAPE_LETTERS = {
+    circle: "\u25cf", square: "\u25a0", diamond: "\u25c6", cross: "\u271a",
+    "triangle-up": "\u25b2", "triangle-down": "\u25bc",
+};
+
+function showMethod(box, name) {
+    const { colour, shape } = fixedLook(name) ?? {};
+    box.style.color = colour === undefined ? "" : `var(--series-${colour})`;
+    box.textContent = SHAPE_LETTERS[shape] ?? "";
+}
+
 function legendOf({ colouring, heights, cellSize, ground, screen }, { low, broadphases }) {
     const legend = [
         swatch(MISSING_COLOUR, "missing: overlap, not listed"),

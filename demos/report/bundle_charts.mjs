@@ -7,19 +7,16 @@
 
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
-import { fileURLToPath } from "node:url";
+import { join } from "node:path";
+import { ownScripts, vegaScripts } from "./chart_files.mjs";
 
 const [packages, output] = process.argv.slice(2);
-const here = dirname(fileURLToPath(import.meta.url));
 const code = [
-    join(packages, "vega/build/vega.min.js"),
-    join(packages, "vega-lite/build/vega-lite.min.js"),
-    join(packages, "vega-embed/build/vega-embed.min.js"),
-    join(here, "charts.js"),
-    join(here, "page.js"),
+    ...vegaScripts(packages),
+    readFileSync(join(packages, "vega-embed/build/vega-embed.min.js"), "utf8"),
+    ...ownScripts(),
+    readFileSync(new URL("page.js", import.meta.url), "utf8"),
 ]
-    .map((path) => readFileSync(path, "utf8"))
     .join("\n")
     .replace(/^\/\/# sourceMappingURL=.*$/gm, "")
     .replace(/\r/g, "")

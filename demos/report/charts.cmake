@@ -26,7 +26,10 @@ add_custom_command(
             -P ${CMAKE_CURRENT_LIST_DIR}/bundle_charts.cmake
     DEPENDS ${CMAKE_CURRENT_LIST_DIR}/bundle_charts.cmake
             ${CMAKE_CURRENT_LIST_DIR}/bundle_charts.mjs
+            ${CMAKE_CURRENT_LIST_DIR}/chart_axes.js
+            ${CMAKE_CURRENT_LIST_DIR}/chart_files.mjs
             ${CMAKE_CURRENT_LIST_DIR}/charts.js
+            ${CMAKE_CURRENT_LIST_DIR}/method_looks.js
             ${CMAKE_CURRENT_LIST_DIR}/package.json
             ${CMAKE_CURRENT_LIST_DIR}/package-lock.json
             ${CMAKE_CURRENT_LIST_DIR}/page.js

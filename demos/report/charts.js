@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Zlib
 //
 // Charts as Vega-Lite draws them (https://vega.github.io/vega-lite/), of charts as they are declared
-// (demos/experiment/findings.hpp): chartSpec(). Colours are variables of page.css.
+// (demos/experiment/findings.hpp): chartSpec(). Colours are variables of page.css. Its axes are in chart_axes.js,
+// the looks of methods in method_looks.js.
 
 const SHAPES = ["circle", "square", "triangle-up", "diamond", "cross", "triangle-down"];
 const DASHES = [[1, 0], [8, 4], [2, 3], [10, 3, 2, 3], [4, 4], [14, 4]];
 const COLOURS = 7; // --series-0 and so on
 const INK = "var(--ink)";
-const WIDTH = 660; // [px], of a chart with the names at its left
-const HEIGHT = 360;
-const LETTER = 7; // [px], the width of one
+const WIDTH = 760; // [px], of a drawing in a file
+const HEIGHT = 360; // [px], of axes with numbers
+const LABELS = 64; // [px], about the width of an axis' numbers and title
+const LINE = 14; // [px], the height of one of text
+const TITLE_LETTER = 10; // [px], the width of a letter of an axis' title, as Vega takes it where it draws no page
+
+const FRONT = "no point is better in both"; // of a line through points, in the legend
 
 const CONFIG = (() => {
     const texts = {
@@ -20,6 +25,7 @@ const CONFIG = (() => {
         font: "system-ui, sans-serif",
         background: null,
         padding: 2,
+        lineBreak: "\n", // in names
         view: { stroke: null },
         axis: {
             ...texts, gridColor: "var(--faint)", domainColor: INK, tickColor: INK, titlePadding: 8, maxExtent: 400,
@@ -36,18 +42,8 @@ const CONFIG = (() => {
     };
 })();
 
-const distinct = (values) => [...new Set(values)];
-
-// Numbers as people read them, of which some name what is drawn.
-const textOf = (value) =>
-    typeof value !== "number" ? (value ?? "-")
-    : Math.abs(value) >= 1000 ? Math.round(value).toLocaleString("en-US")
-    : String(Number(value.toPrecision(4)));
-
-const valuesOf = ({ data }, column) => {
-    const at = data.columns.findIndex((each) => each.name === column);
-    return data.rows.map((row) => row[at]);
-};
+// Significant digits of a number under that title, as tables have them: times vary by more than a thousandth.
+const digitsOf = (title) => (/\[(ms|us|ns|s|times)\b|times as fast/.test(title) ? 3 : 4);
 
 const seriesOf = (chart) => (chart.series ? distinct(valuesOf(chart, chart.series).map(textOf)) : []);
 
@@ -64,146 +60,39 @@ function leastUsed(count, uses) {
     return weights.indexOf(Math.min(...weights));
 }
 
-// Colour, shape and dash of each series, the same in all charts. What is of one method has one colour. Methods
-// that share a chart differ in colour as long as there are colours, and series of one colour in a chart in
-// shape as long as there are shapes.
+// Colour, shape and dash of each series, the same in all charts. What METHOD_LOOKS has looks so. Of the others,
+// what is of one method has one colour; methods that share a chart differ in colour as long as there are
+// colours, and series of one colour in a chart in shape as long as there are shapes.
 function looksOf(charts) {
     const all = charts.map(seriesOf);
     const matesOf = (name, nameOf) =>
         new Set(all.map((each) => each.map(nameOf)).filter((each) => each.includes(name)).flat());
     const looks = new Map();
-    const colours = new Map(); // by method
-    for (const name of distinct(all.flat())) {
+    const colours = new Map(); // by method, of those without one of their own
+    const newColour = (method) => {
+        const mates = matesOf(method, methodOf);
+        const uses = [...looks].map(([other, look]) => [look.colour, mates.has(methodOf(other)) ? 0 : 1]);
+        colours.set(method, leastUsed(COLOURS, uses));
+        return colours.get(method);
+    };
+    const fixedFirst = (name) => (fixedLook(name)?.shape ? 0 : fixedLook(name) ? 1 : 2);
+    for (const name of distinct(all.flat()).sort((a, b) => fixedFirst(a) - fixedFirst(b))) {
+        const fixed = fixedLook(name);
         const method = methodOf(name);
-        if (!colours.has(method)) {
-            const mates = matesOf(method, methodOf);
-            const uses = [...colours].map(([other, colour]) => [colour, mates.has(other) ? 0 : 1]);
-            colours.set(method, leastUsed(COLOURS, uses));
-        }
-        const colour = colours.get(method);
+        const colour = fixed?.colour ?? colours.get(method) ?? newColour(method);
         const mates = matesOf(name, (each) => each);
         const uses = [...looks].map(([other, look]) =>
             [look.shape, !mates.has(other) ? 2 : look.colour === colour ? 0 : 1]);
-        const variant = [...looks.keys()].filter((other) => methodOf(other) === method).length;
-        looks.set(name, { colour, shape: leastUsed(SHAPES.length, uses), dash: variant % DASHES.length });
+        const dashes = [...looks]
+            .filter(([other, look]) => look.colour === colour && (mates.has(other) || methodOf(other) === method))
+            .map(([, look]) => [look.dash, 0]);
+        looks.set(name, {
+            colour,
+            shape: fixed?.shape ? SHAPES.indexOf(fixed.shape) : leastUsed(SHAPES.length, uses),
+            dash: leastUsed(DASHES.length, dashes),
+        });
     }
     return looks;
-}
-
-// --- Axes -----------------------------------------------------------------------------------------
-
-// Three to ten round numbers: decades where there are enough, else steps of 1, 2, 5, else even ones.
-function logTicks(low, high) {
-    const all = vega.scale("log")().domain([low, high]).ticks(6);
-    const beginningWith = (digits) => all.filter((tick) => digits.test(tick.toExponential()));
-    return [/^1e/, /^[125]e/].map(beginningWith).find((ticks) => ticks.length >= 3)
-        ?? (low < high ? vega.scale("linear")().domain([low, high]).ticks(4) : [low]);
-}
-
-// "0.001", "50", "20k", "1e-7"
-const TICK_LABEL = "format(datum.value, datum.value >= 10000 ? '~s' : datum.value < 0.0001 ? '~e' : '~g')";
-
-// "missed log0": the column, its channel, where its numbers stand as shares of the axis, if anywhere, and which
-// names it has. A logarithmic axis has 0, where log0 allows it, apart on a dotted line below the smallest
-// number; its numbers and those of the other columns become places by `transform`.
-function axisOf(chart, words, others = []) {
-    const [column, kind = "linear"] = words.split(" ");
-    const { title } = chart.data.columns.find((each) => each.name === column);
-    const channel = { field: fieldOf(column), title: title || column };
-    if (kind === "names") {
-        const names = distinct(valuesOf(chart, column).map(textOf));
-        const type = chart.mark === "bar" || chart.mark === "cell" ? "band" : "point";
-        return {
-            column, names, channel: { ...channel, type: "nominal", sort: names, scale: { type }, axis: { grid: false } },
-        };
-    }
-    channel.type = "quantitative";
-    const numbers = [column, ...others].flatMap((each) => valuesOf(chart, each)).filter(Number.isFinite);
-    const positive = numbers.filter((number) => number > 0);
-    if (kind === "linear" || positive.length === 0) {
-        const domain = [Math.min(0, ...numbers), Math.max(...numbers)];
-        return { column, channel, shareOf: vega.scale("linear")().domain(domain) };
-    }
-    let low = Math.min(...positive);
-    const high = Math.max(...positive);
-    const ratio = Math.max(high / low, 2);
-    const isBar = chart.mark === "bar";
-    if (isBar) {
-        low = 10 ** Math.floor(Math.log10(low / 1.5)); // of a bar something is seen
-    }
-    const zero = kind === "log0" && numbers.includes(0) ? low * ratio ** -0.12 : null;
-    const axis = { values: logTicks(low, high), labelExpr: TICK_LABEL };
-    if (zero !== null) {
-        const isZero = `datum.value < ${low}`;
-        axis.values.unshift(zero);
-        axis.labelExpr = `${isZero} ? '0' : ${TICK_LABEL}`;
-        axis.gridDash = { condition: { test: isZero, value: [1, 3] }, value: [] };
-        axis.gridColor = { condition: { test: isZero, value: INK }, value: "var(--faint)" };
-    }
-    const domain = [zero === null ? low : isBar ? zero * ratio ** -0.03 : zero, high];
-    const scale = { type: "log", domain, nice: false, padding: isBar ? 0 : 12 };
-    // What a logarithm does not reach has no place.
-    const place = (field) =>
-        `datum['${field}'] > 0 ? datum['${field}'] : datum['${field}'] === 0 ? ${zero} : null`;
-    return {
-        column,
-        begin: domain[0],
-        transform: [column, ...others].map((each) => ({ calculate: place(fieldOf(each)), as: placeOf(each) })),
-        channel: { ...channel, field: placeOf(column), scale, axis },
-        shareOf: (number) => vega.scale("log")().domain(domain)(number > 0 ? number : number === 0 ? zero : null),
-    };
-}
-
-// Fields of Vega-Lite, which reads some letters as paths.
-const fieldOf = (column) => column.replace(/\W/g, "_");
-const placeOf = (column) => `at ${fieldOf(column)}`;
-
-// --- Labels of points -----------------------------------------------------------------------------
-
-const PLACES = [
-    ["left", 7, -7], ["right", -7, -7], ["left", 7, 8], ["right", -7, 8],
-    ["center", 0, -12], ["center", 0, 13], ["left", 9, 0], ["right", -9, 0],
-];
-
-// Of eight places around a point the first in which its label hides neither points nor other labels and ends
-// beyond no side, else the one where it hides least: [align, dx, dy].
-function labelPlaces(points) {
-    const far = 1e6;
-    const taken = [[-far, -far, 0, far], [WIDTH, -far, far, far]]; // left, top, right, bottom
-    taken.push(...points.map(({ x, y }) => [x - 4, y - 4, x + 4, y + 4]));
-    return points.map(({ x, y, label }) => {
-        const boxes = PLACES.map(([align, dx, dy]) => {
-            const width = (LETTER - 1) * label.length;
-            const left = x + dx - width * { left: 0, right: 1, center: 0.5 }[align];
-            return [left, y + dy - 6, left + width, y + dy + 6];
-        });
-        const shared = (a, b) =>
-            Math.max(0, Math.min(a[2], b[2]) - Math.max(a[0], b[0]))
-            * Math.max(0, Math.min(a[3], b[3]) - Math.max(a[1], b[1]));
-        const hidden = boxes.map((box) => taken.reduce((sum, each) => sum + shared(box, each), 0));
-        const best = hidden.indexOf(Math.min(...hidden));
-        taken.push(boxes[best]);
-        return PLACES[best];
-    });
-}
-
-function labelLayer(chart, x, y, rows) {
-    const column = fieldOf(chart.label);
-    const shareOn = (axis, row) => axis.shareOf(row[fieldOf(axis.column)]);
-    const hasPlace = (row) => [x, y].every((axis) => Number.isFinite(shareOn(axis, row)));
-    const labelled = rows.filter((row) => hasPlace(row) && row[column] !== null);
-    const places = labelPlaces(labelled.map((row) => ({
-        x: shareOn(x, row) * WIDTH,
-        y: (1 - shareOn(y, row)) * HEIGHT,
-        label: textOf(row[column]),
-    })));
-    labelled.forEach((row, i) => ([row["label align"], row["label dx"], row["label dy"]] = places[i]));
-    const placed = (field) => ({ expr: `datum['label ${field}']` });
-    return {
-        transform: [{ filter: "isValid(datum['label align'])" }],
-        mark: { type: "text", fontSize: 11, color: INK, align: placed("align"), dx: placed("dx"), dy: placed("dy") },
-        encoding: { text: { field: column, type: "nominal" } },
-    };
 }
 
 // --- Layers ---------------------------------------------------------------------------------------
@@ -223,32 +112,32 @@ const namedLine = (name, dash, rest) => ({
 });
 
 // Through the points that no other beats in both x and y; of equals the first.
-function frontLayer(rows, x, y) {
+function frontLayer(rows, x, y, name) {
     const points = rows.filter((row) => [row[x], row[y]].every(Number.isFinite));
     let least = Infinity;
     for (const row of points.sort((a, b) => a[x] - b[x] || a[y] - b[y])) {
         row["in front"] = row[y] < least;
         least = Math.min(least, row[y]);
     }
-    return namedLine("no point is better in both", [2, 3], { transform: [{ filter: "datum['in front']" }] });
+    return namedLine(name, [2, 3], { transform: [{ filter: "datum['in front']" }] });
 }
 
 // One line for all series where they share a theory, else one for each in its colour.
-function theoryLayer(chart, columnX, field, along, colour) {
+function theoryLayer(chart, columnX, field, along, colour, write) {
     const at = new Map();
     const theories = valuesOf(chart, chart.theory);
     const isShared = valuesOf(chart, columnX).every((x, i) => {
         at.set(x, at.get(x) ?? theories[i]);
         return at.get(x) === theories[i];
     });
-    const { title } = chart.data.columns.find((each) => each.name === chart.theory);
-    return namedLine(title || chart.theory, [6, 4], {
+    return namedLine(write(titleOf(chart, chart.theory)), [6, 4], {
         encoding: { [along]: { field, type: "quantitative" }, ...(isShared || !chart.series ? {} : { color: colour }) },
     });
 }
 
-const cellLayers = (shade, tooltip) => {
+const cellLayers = (shade, tooltip, gradientLength) => {
     const value = `datum['${shade.channel.field}']`;
+    const digits = digitsOf(shade.channel.title);
     const { axis, scale, ...channel } = shade.channel;
     return [
         {
@@ -257,7 +146,7 @@ const cellLayers = (shade, tooltip) => {
                 color: {
                     ...channel,
                     scale: { ...scale, padding: 0, scheme: "viridis" },
-                    legend: axis ? { values: axis.values, labelExpr: axis.labelExpr } : {},
+                    legend: { gradientLength, ...(axis && { values: axis.values, labelExpr: axis.labelExpr }) },
                 },
                 tooltip,
             },
@@ -267,7 +156,7 @@ const cellLayers = (shade, tooltip) => {
             mark: {
                 type: "text",
                 fontSize: 11,
-                text: { expr: `format(${value}, ${value} >= 1000 ? ',.0f' : '.4~g')` },
+                text: { expr: `format(${value}, ${value} >= 1000 ? ',.${digits}r' : '.${digits}~g')` },
                 color: { expr: `luminance(scale('color', ${value})) > 0.25 ? '#000000' : '#ffffff'` },
             },
         },
@@ -276,42 +165,68 @@ const cellLayers = (shade, tooltip) => {
 
 // --- The chart ------------------------------------------------------------------------------------
 
-const longest = (names) => Math.max(0, ...names.map((name) => name.length));
-
-// Width and height, and whether bars lie, as they do where their names would not stand side by side; sets how
-// names are written.
-function layOut(chart, x, y, isOneSeries) {
-    const doesLie = chart.mark === "bar" && (longest(x.names) + 2) * x.names.length * LETTER > WIDTH;
-    if (x.names) {
-        x.channel.axis.labelAngle = 0;
-    }
-    if (doesLie) {
-        x.channel.title = null; // the names speak for themselves
-    } else if (y.names?.every((name) => /^[\d.,e+-]+$/.test(name))) {
-        y.channel.sort = [...y.names].reverse();
-    }
-    const left = doesLie ? x : y;
-    if (!left.names) {
-        return { doesLie, width: WIDTH, height: HEIGHT };
-    }
-    left.channel.axis.labelLimit = 320; // about 45 letters
-    return {
-        doesLie,
-        width: WIDTH - Math.min(longest(left.names), 45) * LETTER,
-        height: { step: doesLie && !isOneSeries ? 18 : 27 },
-    };
+// How the names of an axis are written: in lines of at most so many letters.
+function writeNames(axis, letters) {
+    const lines = axis.names.map((name) => linesOf(name, letters));
+    axis.written = (name) => linesOf(name, letters).join("\n");
+    axis.width = longest(lines.flat()) * LETTER;
+    axis.lines = Math.max(...lines.map((each) => each.length));
+    axis.channel.sort = axis.names.map(axis.written);
+    Object.assign(axis.channel.axis, { labelAngle: 0, labelOverlap: false });
 }
 
-// How series are told apart: by colour, shape of points, and dash of lines.
-function seriesChannels(chart, series, looks, hasLegend) {
-    const columns = Math.max(1, Math.floor(WIDTH / (longest(series) * LETTER + 30)));
+// Whether bars and points with names lie, as they do where they are of one series, or their names would not be
+// side by side, and the lengths of the axes [px]; sets how names and titles are written. Only cells, each of which
+// holds its number, may make a chart wider than `width`.
+function layOut(chart, x, y, seriesInARow, width) {
+    const hasRows = chart.mark === "bar" || chart.mark === "point";
+    const doesLie = Boolean(hasRows && x.names
+        && (seriesInARow === 1 || (longest(x.names) + 2) * x.names.length * LETTER > width - LABELS));
+    const [below, left] = doesLie ? [y, x] : [x, y];
+    let leftWidth = LABELS;
+    let up = HEIGHT;
+    if (left.names) {
+        writeNames(left, Math.min(45, Math.floor(0.35 * width / LETTER)));
+        // All lines of a name are about the middle of its row.
+        const dy = { signal: `${-LINE / 2} * (length(split(datum.label, '\\n')) - 1)` };
+        left.channel.axis.encoding = { labels: { dy: { value: dy } } };
+        leftWidth = left.width + (doesLie ? 20 : 40);
+        const ofSeries = chart.mark === "bar" ? 18 : 12;
+        up = left.names.length * Math.max(seriesInARow * ofSeries, left.lines * LINE + 13);
+    }
+    let across = width - leftWidth;
+    if (chart.mark === "cell") {
+        const texts = valuesOf(chart, chart.shade.split(" ")[0]).map(textOf);
+        texts.push(...x.names.flatMap((name) => name.split(" ")));
+        across = Math.max(across, (longest(texts) * LETTER + 6) * x.names.length);
+    }
+    if (below.names) {
+        writeNames(below, Math.floor(across / below.names.length / LETTER));
+    }
+    below.channel.title = linesOf(below.channel.title, Math.floor(across / TITLE_LETTER));
+    if (doesLie) {
+        left.channel.title = null; // the names speak for themselves
+    } else {
+        left.channel.title = linesOf(left.channel.title, Math.floor(up / TITLE_LETTER));
+        if (left.names?.every((name) => /^[\d.,e+-]+$/.test(name))) {
+            left.channel.sort.reverse();
+        }
+    }
+    return { doesLie, across, up, width: across + leftWidth };
+}
+
+// How series are told apart: by colour, shape of points, and dash of lines. `write` writes their names; the
+// legend is as wide as the x axis.
+function seriesChannels(chart, series, write, looks, legendWidth) {
+    const letters = longest(series.flatMap((name) => write(name).split("\n")));
+    const columns = Math.max(1, Math.floor(legendWidth / (letters * LETTER + 48)));
     const bySeries = (of, legend) =>
         series.length === 0 ? { value: of({ colour: 0, shape: 0, dash: 0 }) } : {
             field: fieldOf(chart.series),
             type: "nominal",
             title: null,
-            scale: { domain: series, range: series.map((name) => of(looks.get(name))) },
-            legend: hasLegend ? legend : null,
+            scale: { domain: series.map(write), range: series.map((name) => of(looks.get(name))) },
+            legend: legendWidth > 0 ? legend : null,
         };
     return {
         color: bySeries(({ colour }) => `var(--series-${colour})`, { columns }),
@@ -320,28 +235,35 @@ function seriesChannels(chart, series, looks, hasLegend) {
     };
 }
 
-// The specification of a chart; looksOf() the charts of its page are `looks`.
-function chartSpec(chart, looks) {
+// The specification of a chart that is as wide as that [px]; looksOf() the charts of its page are `looks`.
+function chartSpec(chart, looks, width = WIDTH) {
     const { mark = "line", low, high, theory, data } = chart;
     const x = axisOf(chart, chart.x);
     const y = axisOf(chart, chart.y, [low, high, theory].filter(Boolean));
     const shade = chart.shade && axisOf(chart, chart.shade);
     const series = seriesOf(chart);
     const isOneSeries = series.length === 0 || chart.series === x.column;
-    const { doesLie, width, height } = layOut(chart, x, y, isOneSeries);
-    const { color, shape, strokeDash } = seriesChannels(chart, series, looks, !isOneSeries);
-    const [across, along] = doesLie ? ["y", "x"] : ["x", "y"];
+    const lengths = layOut(chart, x, y, isOneSeries ? 1 : series.length, width);
+    const named = new Map([x, y].filter((axis) => axis.names).map((axis) => [axis.column, axis.written]));
+    const inLegend = (name) => linesOf(name, Math.floor((lengths.across - 48) / LETTER)).join("\n");
+    const writeSeries = named.get(chart.series) ?? inLegend;
+    if (chart.series) {
+        named.set(chart.series, writeSeries);
+    }
+    const { color, shape, strokeDash } =
+        seriesChannels(chart, series, writeSeries, looks, isOneSeries ? 0 : lengths.across);
+    const [across, along] = lengths.doesLie ? ["y", "x"] : ["x", "y"];
+    const sideBySide = { field: fieldOf(chart.series ?? ""), sort: series.map(writeSeries) };
     const onY = (column) => (y.begin ? placeOf(column) : fieldOf(column));
 
-    const named = [x, y].filter((axis) => axis.names).map((axis) => axis.column);
     const rows = data.rows.map((row) =>
         Object.fromEntries(data.columns.map(({ name }, i) =>
-            [fieldOf(name), named.includes(name) ? textOf(row[i]) : row[i]])));
+            [fieldOf(name), named.has(name) ? named.get(name)(textOf(row[i])) : row[i]])));
     const tooltip = data.columns.map(({ name, title }) => ({
         field: fieldOf(name),
         title: title || name,
         ...(rows.some((row) => typeof row[fieldOf(name)] === "string")
-            ? { type: "nominal" } : { type: "quantitative", format: ",.4~g" }),
+            ? { type: "nominal" } : { type: "quantitative", format: `,.${digitsOf(title || name)}~g` }),
     }));
 
     const isDense = mark === "line" && rows.length > Math.max(series.length, 1) * 40;
@@ -359,29 +281,34 @@ function chartSpec(chart, looks) {
     };
     const lines = { mark: { type: "line", strokeWidth: 2, order: null }, encoding: { color, strokeDash } }; // as the rows
     const bars = {
-        mark: { type: "bar", orient: doesLie ? "horizontal" : "vertical" },
-        encoding: { color, tooltip, ...(y.begin ? { [`${along}2`]: { datum: y.begin } } : {}) },
+        mark: { type: "bar", orient: lengths.doesLie ? "horizontal" : "vertical" },
+        encoding: { color, tooltip },
     };
     return {
         $schema: "https://vega.github.io/schema/vega-lite/v6.json",
         description: chart.title,
-        width,
-        height,
+        width: lengths.width,
+        height: lengths.up,
+        autosize: { type: "fit-x", contains: "padding" },
         data: { values: rows },
         transform: [x, y, shade].flatMap((axis) => axis?.transform ?? []),
         encoding: {
             [across]: x.channel,
             [along]: y.channel,
-            ...(mark === "bar" && !isOneSeries
-                ? { [`${across}Offset`]: { field: fieldOf(chart.series), sort: series } } : {}),
+            ...(x.names && mark !== "cell" && !isOneSeries ? { [`${across}Offset`]: sideBySide } : {}),
         },
         layer: [
-            chart.front ? frontLayer(rows, fieldOf(x.column), fieldOf(y.column)) : [],
-            { cell: () => cellLayers(shade, tooltip), bar: () => bars, line: () => lines, point: () => [] }[mark](),
+            chart.front ? frontLayer(rows, fieldOf(x.column), fieldOf(y.column), inLegend(FRONT)) : [],
+            {
+                cell: () => cellLayers(shade, tooltip, Math.min(300, lengths.across)),
+                bar: () => bars,
+                line: () => lines,
+                point: () => [],
+            }[mark](),
             low ? errors : [],
-            theory ? theoryLayer(chart, x.column, onY(theory), along, color) : [],
+            theory ? theoryLayer(chart, x.column, onY(theory), along, color, inLegend) : [],
             mark === "line" || mark === "point" ? points : [],
-            chart.label ? labelLayer(chart, x, y, rows) : [],
+            chart.label ? labelLayer(chart, x, y, rows, lengths) : [],
         ].flat(),
         resolve: { scale: { strokeDash: "independent" } },
         config: CONFIG,

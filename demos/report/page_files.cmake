@@ -39,7 +39,7 @@ hashphase_bundle_style(pageStyle report/page.css)
 configure_file(report/page_files.cpp.in page_files.cpp @ONLY)
 
 hashphase_bundle_script(
-    replayScript replay/replay_data.js replay/replay_camera.js replay/shaders/background.glsl
+    replayScript report/method_looks.js replay/replay_data.js replay/replay_camera.js replay/shaders/background.glsl
     replay/shaders/light.glsl replay/shaders/ground.glsl replay/shaders/objects.glsl
     replay/shaders/boxes.glsl replay/shaders/spheres.glsl replay/shaders/pairs.glsl
     replay/replay_drawing.js replay/replay_legend.js replay/replay.html replay/replay.js)

@@ -262,20 +262,31 @@ async function checkChanges({ tab, evaluate }, found) {
 // What it opens on, and the first frame to see of another broadphase.
 async function checkOpening({ evaluate }, { frame }) {
     const shown = () => evaluate("[root.dataset.broadphase, Number(root.dataset.frame)]");
-    assert.deepEqual(await shown(), ["right", 0], "ours, from the beginning");
+    assert.deepEqual(await shown(), ["hash", 0], "ours, from the beginning");
     const counts = () => evaluate("root.querySelector('.counts').textContent");
-    assert.match(await counts(), /right lists exactly these\.$/);
+    assert.match(await counts(), /hash lists exactly these\.$/);
     const faults = await evaluate("root.querySelector('.faults').textContent");
-    assert.equal(faults, "Wrong pairs, sum of all recorded frames: forgetful 9 missing; right 0.");
+    assert.equal(faults, "Wrong pairs, sum of all recorded frames: forgetful 9 missing; hash 0.");
     assert.equal(await evaluate("root.querySelector('[data-act=showFirst]').hidden"), false);
     await evaluate("choose('broadphase', 'forgetful')");
     assert.deepEqual(await shown(), ["forgetful", frame], "its first wrong frame");
     assert.match(await counts(), /forgetful: 1 missing\.$/);
-    await evaluate("choose('broadphase', 'right')");
-    assert.deepEqual(await shown(), ["right", frame], "in the same frame");
+    await evaluate("choose('broadphase', 'hash')");
+    assert.deepEqual(await shown(), ["hash", frame], "in the same frame");
     await evaluate(`scrub(${frame + 2})`);
     await evaluate("choose('broadphase', 'forgetful')");
     assert.deepEqual(await shown(), ["forgetful", frame + 2], "which shows a wrong pair, too");
+}
+
+// The mark of the judged broadphase is that of its line in charts.
+async function checkMethod({ evaluate }) {
+    const mark = (name) => evaluate(`(async () => {
+        await choose("broadphase", "${name}");
+        const { textContent, style } = root.querySelector(".method");
+        return [textContent, style.color];
+    })()`);
+    assert.deepEqual(await mark("hash"), ["\u25cf", "var(--series-0)"]);
+    assert.deepEqual(await mark("forgetful"), ["", ""], "which has no look of its own");
 }
 
 async function checkWrongPair({ tab, evaluate }, { frame, objects: [a, b] }) {
@@ -316,6 +327,7 @@ const checkAll = (found) => async (page) => {
     await checkScreens(page);
     const frames = found.frames.map(({ exactPairs, missing, extra }, i) => [i, exactPairs, missing, extra]);
     assert.deepEqual(await evaluate(allFrames), frames);
+    await checkMethod(page);
     await checkChanges(page, found);
     await checkKeys(page, frames.length);
     console.log("frames a second:", await evaluate(framesASecond));

@@ -12,16 +12,20 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { runInThisContext } from "node:vm";
+import { ownScripts, vegaScripts } from "../../demos/report/chart_files.mjs";
 
 const [packages] = process.argv.slice(2);
-for (const script of [
-    join(packages, "vega/build/vega.min.js"),
-    join(packages, "vega-lite/build/vega-lite.min.js"),
-    new URL("../../demos/report/charts.js", import.meta.url),
-]) {
-    runInThisContext(readFileSync(script, "utf8"));
+for (const script of [...vegaScripts(packages), ...ownScripts()]) {
+    runInThisContext(script);
 }
-const { vega, vegaLite, axisOf, chartSpec, labelPlaces, logTicks, looksOf } = globalThis;
+const { vega, vegaLite, axisOf, chartSpec, fixedLook, labelPlaces, linesOf, logTicks, looksOf } = globalThis;
+
+// The colours of series, of page.css.
+const palettes = (() => {
+    const style = readFileSync(new URL("../../demos/report/page.css", import.meta.url), "utf8");
+    const all = [...style.matchAll(/--series-\d: (#\w{6})/g)].map(([, colour]) => colour);
+    return { light: all.slice(0, all.length / 2), dark: all.slice(all.length / 2) };
+})();
 
 const chartOf = (declared, columns, rows) =>
     ({ title: "t", mark: "point", ...declared, data: { columns: columns.map((name) => ({ name, title: "" })), rows } });
@@ -71,21 +75,40 @@ test("An axis has no place for zero where there is none", () => {
     assert.equal(axisOf(chart, chart.y).begin, 0.5);
 });
 
-test("An axis is straight where all is zero or nothing", () => {
+test("An axis is straight, and has zero at its end, where all is zero or nothing", () => {
     for (const values of [[0, 0], [null, null]]) {
         const chart = yChart("y log0", ...values);
-        assert.equal(axisOf(chart, chart.y).channel.scale, undefined);
+        assert.deepEqual(axisOf(chart, chart.y).channel.scale, { domain: [0, 1] });
     }
+});
+
+test("Only a logarithmic axis says so in its title", () => {
+    const chart = chartOf({ x: "x", y: "y log" }, ["x", "y"], [[1, 1], [2, 10]]);
+    const { x, y } = chartSpec(chart, new Map()).encoding;
+    assert.deepEqual([x.title.join(" "), y.title.join(" ")], ["x", "y, log scale"]);
 });
 
 test("What a logarithm does not reach, and nothing, is not drawn", async () => {
     assert.equal((await drawn(yChart("y log", 0, 5, null, 6, -1), 0)).length, 2);
 });
 
-test("Bars on a logarithmic axis begin below the smallest number", async () => {
-    const chart = { ...yChart("y log", 0.02, 5), mark: "bar", x: "x names" };
-    const [least] = await drawn(chart, 0);
-    assert(least.height > 20, least.height);
+test("Bars begin at zero, and those of zero have no length", async () => {
+    const some = { ...yChart("y", 0, 5), mark: "bar", x: "x names" };
+    assert.deepEqual((await drawn(some, 0)).map(({ x, width }) => [x, width > 0]), [[0, false], [0, true]]);
+    const none = { ...yChart("y", 0, 0), mark: "bar", x: "x names" };
+    assert.deepEqual((await drawn(none, 0)).map(({ x, width }) => [x, width]), [[0, 0], [0, 0]]);
+});
+
+test("Points with names lie in rows of their own, those of a name side by side, each on its error", async () => {
+    const names = ["a", "b"].map((letter) => letter.repeat(60));
+    const chart = chartOf({ x: "x names", y: "y log", series: "m", low: "l", high: "h" }, ["x", "m", "y", "l", "h"],
+        names.flatMap((name) => [[name, "p", 2, 1, 4], [name, "q", 8, 4, 16]]));
+    const [rules, points] = [await drawn(chart, 0), await drawn(chart, 1)];
+    assert.equal(new Set(points.map(({ y }) => y)).size, 4);
+    for (const [i, { x, y }] of points.entries()) {
+        assert.equal(rules[i].y, y);
+        assert(Math.min(rules[i].x, rules[i].x2) < x && x < Math.max(rules[i].x, rules[i].x2), [rules[i].x, x]);
+    }
 });
 
 test("The front holds the points that no other beats in both", async () => {
@@ -116,9 +139,33 @@ test("Numbers that name rows of cells grow upwards", () => {
 
 test("Labels keep apart from each other and from the sides", () => {
     const at = (x, label) => ({ x, y: 100, label });
-    const places = labelPlaces([at(100, "label"), at(100, "label"), at(100, "label"), at(658, "at the side")]);
+    const points = [at(100, "label"), at(100, "label"), at(100, "label"), at(658, "at the side")];
+    const places = labelPlaces(points, 660);
     assert.equal(new Set(places.slice(0, 3).map(String)).size, 3);
     assert.equal(places[3][0], "right");
+});
+
+test("A point has no label where that would hide others", () => {
+    const places = labelPlaces(Array.from({ length: 20 }, () => ({ x: 100, y: 100, label: "a label" })), 660);
+    assert(places.some((place) => place === undefined), "there are eight places");
+    assert(places[0] !== undefined);
+});
+
+test("Texts break into lines between words, and lose none", () => {
+    assert.deepEqual(linesOf("a bb ccc", 4), ["a bb", "ccc"]);
+    assert.deepEqual(linesOf("a longestword b", 4), ["a", "longestword", "b"]);
+});
+
+test("A chart has the width that it is given, and names in more lines in less of it", async () => {
+    const name = "a name of many words for something";
+    const chart = chartOf({ mark: "bar", x: "x names", y: "y" }, ["x", "y"], ["a", "b"].map((each) => [each + name, 1]));
+    for (const [width, lines] of [[900, 1], [360, 3]]) {
+        const spec = chartSpec(chart, looksOf([chart]), width);
+        const view = new vega.View(vega.parse(vegaLite.compile(spec).spec), { renderer: "none" });
+        const svg = await view.toSVG();
+        assert.match(svg, new RegExp(`width="${width}"`));
+        assert.equal(spec.data.values[0].x.split("\n").length, lines);
+    }
 });
 
 test("Series look the same in all charts and differ within one", () => {
@@ -160,6 +207,8 @@ test("Points without a place have no label", async () => {
     const chart = chartOf({ x: "x log", y: "y log", label: "l" }, ["x", "y", "l"], rows);
     assert.deepEqual((await drawn(chart, 1)).map(({ text }) => text), ["e"]);
     assert.deepEqual((await drawn({ ...chart, x: "x log0" }, 1)).map(({ text }) => text), ["a", "e"]);
+    const numbers = { ...chart, data: { ...chart.data, rows: [[1, 1, 0.25], [9, 9, 4000]] } };
+    assert.deepEqual((await drawn(numbers, 1)).map(({ text }) => text), ["0.25", "4,000"]);
 });
 
 test("Errors reach from low to high, on logarithmic axes too", async () => {
@@ -191,7 +240,7 @@ test("What is drawn into files has titles, all rows, and colours of its own", ()
     const folder = mkdtempSync(join(tmpdir(), "charts-"));
     try {
         const chart = chartOf({ mark: "line", x: "x", y: "y", series: "m" }, ["x", "y", "m"],
-            [[1, 1, "a"], [2, 2, "a"], [1, 3, "b"]]);
+            [[1, 1, "btDbvtBroadphase"], [2, 2, "btDbvtBroadphase"], [1, 3, "hash"]]);
         const charts = [{ ...chart, name: "one", title: "The title", settings: "the settings" }];
         writeFileSync(join(folder, "found.json"), JSON.stringify({ charts }));
         execFileSync(process.execPath, [fileURLToPath(new URL("../../demos/report/draw_charts.mjs", import.meta.url)),
@@ -201,12 +250,72 @@ test("What is drawn into files has titles, all rows, and colours of its own", ()
         assert.deepEqual([title, data.values.length], [{ text: ["The title"], subtitle: ["the settings"] }, 3]);
         for (const text of [spec, svg]) {
             assert.doesNotMatch(text, /var\(|undefined|NaN/);
-            assert.match(text, /#0072b2/); // of the first series
+            for (const name of ["btDbvtBroadphase", "hash"]) {
+                assert(text.includes(palettes.light[fixedLook(name).colour]), `${name} as on pages`);
+            }
         }
         assert.match(svg, /The title.*the settings/s);
     } finally {
         rmSync(folder, { recursive: true });
     }
+});
+
+test("Methods look the same whatever else a page shows, and as in the table", () => {
+    const one = looksOf([ofSeries("btDbvtBroadphase", "hashphase", "other")]);
+    const two = looksOf([ofSeries("another", "bt32BitAxisSweep3", "more"), ofSeries("hashphase", "btDbvtBroadphase")]);
+    for (const name of ["hashphase", "btDbvtBroadphase"]) {
+        assert.deepEqual(one.get(name), two.get(name));
+        assert.equal(one.get(name).colour, fixedLook(name).colour);
+    }
+    assert.equal(fixedLook("hash").colour, fixedLook("hashphase, automatic cells").colour);
+    assert.equal(fixedLook("something else"), undefined);
+});
+
+// Machado, Oliveira and Fernandes, "A Physiologically-based Model for Simulation of Color Vision Deficiency", 2009:
+// what people see who lack a kind of cone, of linear RGB.
+const VISIONS = {
+    all: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    protanopia: [[0.152, 1.053, -0.205], [0.115, 0.786, 0.099], [-0.004, -0.048, 1.052]],
+    deuteranopia: [[0.367, 0.861, -0.228], [0.28, 0.673, 0.047], [-0.012, 0.043, 0.969]],
+    tritanopia: [[1.256, -0.077, -0.179], [-0.078, 0.931, 0.147], [0.005, 0.691, 0.304]],
+};
+
+// CIE L*a*b* of a colour, in which a distance of 2.3 is just noticed.
+function labOf(hex, vision) {
+    const linear = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255)
+        .map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4));
+    const [r, g, b] = vision.map((row) => Math.min(1, Math.max(0, row.reduce((sum, of, i) => sum + of * linear[i], 0))));
+    const [x, y, z] = [
+        (0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505,
+        0.2126 * r + 0.7152 * g + 0.0722 * b,
+        (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089,
+    ].map((value) => (value > 0.008856 ? Math.cbrt(value) : 7.787 * value + 16 / 116));
+    return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+
+test("Colours of methods differ for people of any colour vision, on light and dark screens", () => {
+    for (const [screen, colours] of Object.entries(palettes)) {
+        assert.equal(colours.length, 7);
+        for (const [name, vision] of Object.entries(VISIONS)) {
+            const seen = colours.map((colour) => labOf(colour, vision));
+            for (const [i, one] of seen.entries()) {
+                for (const [j, other] of seen.slice(0, i).entries()) {
+                    const distance = Math.hypot(...one.map((value, axis) => value - other[axis]));
+                    assert(distance > 13, `${j} and ${i}, ${screen}, ${name}: ${distance}`);
+                }
+            }
+        }
+    }
+});
+
+test("Broadphases differ in shape as well", () => {
+    const names = ["hash", "dbvt", "dbvt-deferred", "axis-sweep", "simple"];
+    const looks = names.map(fixedLook);
+    assert.equal(new Set(looks.map(({ shape }) => shape)).size, names.length);
+    assert.equal(new Set(looks.map(({ colour }) => colour)).size, names.length);
+    const titles = ["hashphase", "btDbvtBroadphase", "btDbvtBroadphase, deferred", "bt32BitAxisSweep3",
+        "btSimpleBroadphase"];
+    assert.deepEqual(titles.map(fixedLook), looks, "by either name");
 });
 
 test("Columns that Vega would read as paths are columns", async () => {

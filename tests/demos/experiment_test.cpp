@@ -163,7 +163,7 @@ TEST(Findings, DrawAChartForEachRowOfAQuestion) {
     const Findings findings = findingsOf(R"sql(
 CREATE VIEW texts AS SELECT 'three' AS n;
 /* {"each": "SELECT DISTINCT method FROM frames", "chart": "T-{:method}", "title": "Of {:method} ones",
-    "settings": "{n} frames", "mark": "bar", "x": "frame names", "y": "ms log0", "series": "method",
+    "settings": "{n} frames", "mark": "point", "x": "frame names", "y": "ms log0", "series": "method",
     "front": true} */
 SELECT method, frame, ms AS "ms: time [ms]" FROM frames WHERE method = :method;
 /* {"each": "SELECT 1 AS one FROM frames WHERE ms > 5000", "table": "none"} */
@@ -177,7 +177,7 @@ SELECT 1 AS one;
     EXPECT_EQ(chart.name, "T-quick");
     EXPECT_EQ(chart.title, "Of quick ones");
     EXPECT_EQ(chart.settings, "three frames");
-    EXPECT_EQ(chart.drawn, (std::map<std::string, std::string>{{"mark", "bar"},
+    EXPECT_EQ(chart.drawn, (std::map<std::string, std::string>{{"mark", "point"},
                                                                {"x", "frame names"},
                                                                {"y", "ms log0"},
                                                                {"series", "method"},
@@ -232,6 +232,9 @@ TEST(Findings, NameTheFaultOfADeclaration) {
                       "SELECT ms FROM frames;"),
               "The chart 'C' has no shade.");
     EXPECT_EQ(faultOf("/* {\"shown\": \"C\"} */ SELECT ms FROM frames;"),
+    EXPECT_EQ(faultOf("/* {\"chart\": \"C\", \"mark\": \"bar\", \"x\": \"ms names\", \"y\": \"ms "
+                      "log0\"} */ SELECT ms FROM frames;"),
+              "The bars of 'C' cannot begin at 0 on a logarithmic axis: draw points.");
               "Nothing is shown as {\"shown\":\"C\"}.");
     EXPECT_EQ(faultOf("SELEC 1;"), "near \"SELEC\": syntax error in: SELEC 1;");
 }

@@ -43,7 +43,7 @@ std::array<BroadphaseKind, 2> kindsToReplay() {
     };
     return {BroadphaseKind{"forgetful", "a wrong one", "for tests", false, 1'000'000, true,
                            makeForgetful},
-            BroadphaseKind{"right", "a right one", "for tests", true, 1'000'000, true, make}};
+            BroadphaseKind{"hash", "a right one", "for tests", true, 1'000'000, true, make}};
 }
 
 /// Writes the page of a comparison, and returns what it found of "forgetful" itself.

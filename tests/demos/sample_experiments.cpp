@@ -71,7 +71,8 @@ Chart points() {
     return chart;
 }
 
-Chart bars(const std::string& name, const std::string& ending) {
+/// Bars, or points on lines of their own.
+Chart byName(const std::string& name, const std::string& mark, const std::string& ending) {
     Chart chart{name,
                 "Objects that are in sight and are not drawn, or are drawn and out of sight",
                 "50,000 objects, 100 cameras.",
@@ -81,16 +82,17 @@ Chart bars(const std::string& name, const std::string& ending) {
                   {"low", "low"},
                   {"high", "high"}},
                  {}},
-                {{"mark", "bar"},
+                {{"mark", mark},
                  {"x", "test names"},
-                 {"y", "culled log0"},
+                 {"y", mark == "bar" ? "culled" : "culled log0"},
                  {"series", "camera"},
                  {"low", "low"},
                  {"high", "high"}}};
     for (const std::string test : {"corners", "planes", "exact"}) {
         for (const std::string camera : {"level", "looking down"}) {
             const double culled = test == "exact" ? 0 : test == "planes" ? 0.02 : 0.3;
-            chart.data.add({test + ending, camera, culled, culled / 1.3, culled * 1.3});
+            chart.data.add(
+                {test + ending, camera + " (" + mark + "s)", culled, culled / 1.3, culled * 1.3});
         }
     }
     return chart;
@@ -145,12 +147,13 @@ Findings sampleFindings() {
 }  // namespace
 
 std::vector<Chart> sampleCharts() {
-    return {lines(),
-            points(),
-            bars("S1-bars", ""),
-            bars("S1-long-bars", " that have a name of some length to be written beside them"),
-            cells(),
-            plainLine()};
+    return {
+        lines(),
+        points(),
+        byName("S1-bars", "bar", ""),
+        byName("S1-dots", "point", " that have a name of some length to be written beside them"),
+        cells(),
+        plainLine()};
 }
 
 std::vector<Experiment> sampleExperiments() {

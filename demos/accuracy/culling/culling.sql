@@ -46,7 +46,7 @@ UNION ALL VALUES
 ('A flight is 8 looks of a camera at 6 m/s that turns by 12 degrees a second, 60 looks a second; times are those of a flight by 8.');
 
 /* {"chart": "P4-lost", "title": "Visible objects that are not drawn: none may be lost",
-    "settings": "{scene}", "mark": "bar", "x": "setting names", "y": "lost", "series": "method",
+    "settings": "{scene}", "mark": "point", "x": "setting names", "y": "lost", "series": "method",
     "low": "low", "high": "high"} */
 SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
        100 * interval_low(lost, max(visible, 1)) AS low,
@@ -56,7 +56,7 @@ SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
 FROM did WHERE scene = 'ground';
 
 /* {"chart": "P4-overdraw", "title": "Objects that are drawn though nothing of them is visible",
-    "settings": "{scene}", "mark": "bar", "x": "setting names", "y": "in_vain", "series": "method"} */
+    "settings": "{scene}", "mark": "point", "x": "setting names", "y": "in_vain", "series": "method"} */
 SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
        100 * interval_low(lost, max(visible, 1)) AS low,
        100 * interval_high(lost, max(visible, 1)) AS high,

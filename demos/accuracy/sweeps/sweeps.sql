@@ -98,7 +98,7 @@ SELECT * FROM shown_moves WHERE "motion: fast objects move by" = :motion_text;
 
 /* {"chart": "P1-false",
     "title": "Pairs that are listed for each fast object though they never touch, and left to others to test",
-    "settings": "{landscape}", "mark": "bar", "x": "method names", "y": "false log0",
+    "settings": "{landscape}", "mark": "point", "x": "method names", "y": "false log0",
     "series": "motion"} */
 SELECT * FROM shown_moves;
 

@@ -92,7 +92,7 @@ SELECT slope AS "slope: slope [degrees]", method,
 FROM rests WHERE kind = 'terraces' ORDER BY rowid;
 
 /* {"chart": "P9-points", "title": "Points on the ground for which no triangle is found",
-    "settings": "{mesh}; hills, vertices moved by up to 0.3 m", "mark": "bar", "x": "place names",
+    "settings": "{mesh}; hills, vertices moved by up to 0.3 m", "mark": "point", "x": "place names",
     "y": "no_ground", "series": "method", "low": "low", "high": "high"} */
 SELECT place AS "place: points", method, percent(no_ground, points) AS "no_ground: no ground found [%]",
        100 * interval_low(no_ground, points) AS low, 100 * interval_high(no_ground, points) AS high,
