@@ -54,8 +54,9 @@ std::string list(const std::vector<Check>& checks) {
 
 /// Where in the document something stands.
 struct Place {
-    std::string idPrefix;  // keeps the ids of parts apart
-    int headingLevel = 2;  // of sections; their charts are one below
+    std::string idPrefix;   // keeps the ids of parts apart
+    int headingLevel = 2;   // of sections; their charts are one below
+    bool isFolded = false;  // so that a page of many parts can be seen at a glance
 
     [[nodiscard]] std::string sectionId(std::size_t index) const {
         return idPrefix + "section-" + std::to_string(index);
@@ -67,7 +68,7 @@ std::string idOfPart(std::size_t index) {
 }
 
 Place placeOfPart(std::size_t index) {
-    return {idOfPart(index) + "-", 3};
+    return {idOfPart(index) + "-", 3, true};
 }
 
 std::string verdictOf(const Page& page) {
@@ -117,7 +118,7 @@ private:
         }
     }
 
-    /// With their hashes. A tab's script is there before the one that shows a tab.
+    /// With their hashes. A tab's script comes before the one that shows a tab.
     [[nodiscard]] std::vector<std::pair<std::string_view, std::string>> scripts() const {
         std::vector<std::pair<std::string_view, std::string>> all;
         if (hasCharts()) {
@@ -126,9 +127,7 @@ private:
         for (const PageTab* tab : tabs_) {
             all.emplace_back(tab->script.code, policyHash(tab->script));
         }
-        if (!tabs_.empty()) {
-            all.emplace_back(tabsScript().code, policyHash(tabsScript()));
-        }
+        all.emplace_back(navigationScript().code, policyHash(navigationScript()));
         return all;
     }
 
@@ -144,7 +143,7 @@ private:
         out_ << "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                 "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
                 "script-src "
-             << (admitted.empty() ? "'none'" : admitted)
+             << admitted
              << "; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
                 "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
              << tag("title", escaped(page_.title)) << "\n<style>" << pageStyle();
@@ -201,14 +200,16 @@ private:
     }
 
     void writeReport() const {
+        out_ << "<div class=\"report\">\n";
         writeContents();
+        out_ << "<div class=\"content\">\n";
         writeSections(page_, {});
         for (std::size_t i = 0; i < page_.parts.size(); ++i) {
             writePart(i);
         }
         out_ << "<section id=\"provenance\">\n" << heading(2, kProvenanceHeading) << '\n';
         writeTable(provenanceTable(page_.provenance), out_);
-        out_ << "</section>\n";
+        out_ << "</section>\n</div>\n</div>\n";
     }
 
     // The sections of a part are folded up, so that the parts can be seen at a glance.
@@ -233,10 +234,10 @@ private:
         out_ << "<article class=\"part\" id=\"" << idOfPart(index) << "\">\n"
              << heading(2, part.title) << '\n'
              << paragraph(part.introduction) << verdictOf(part);
-        if (!part.provenance.commandLine.empty()) {
         if (const std::string overload = overloadSentence(part.provenance); !overload.empty()) {
             out_ << paragraph(overload, "verdict unchecked");
         }
+        if (!part.provenance.commandLine.empty()) {
             out_ << tag("p class=\"quiet\"",
                         "This part alone: " + tag("code", escaped(part.provenance.commandLine)))
                  << '\n';
@@ -247,10 +248,12 @@ private:
 
     void writeSections(const Page& page, const Place& place) const {
         for (std::size_t i = 0; i < page.sections.size(); ++i) {
+            const std::string title = heading(place.headingLevel, page.sections[i].heading);
             out_ << "<section id=\"" << place.sectionId(i) << "\">\n"
-                 << heading(place.headingLevel, page.sections[i].heading) << '\n';
+                 << (place.isFolded ? "<details class=\"fold\">\n" + tag("summary", title) : title)
+                 << '\n';
             writeSection(page.sections[i], place);
-            out_ << "</section>\n";
+            out_ << (place.isFolded ? "</details>\n" : "") << "</section>\n";
         }
     }
 

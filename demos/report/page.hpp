@@ -100,9 +100,9 @@ struct Page {
     std::vector<PageSection> sections;
     Provenance provenance;
 
-    /// Pages that follow the sections, each with its verdict. They have no parts of their own, and of
-    /// their provenance only the command and an overload are written. Their tabs, of other names than
-    /// the page's, stand beside its report.
+    /// Pages that follow the sections, each with its verdict; their sections are folded up. They have no parts of
+    /// their own, and of their provenance only the command and an overload are written. Their tabs, of other names
+    /// than the page's, stand beside its report.
     std::vector<Page> parts = {};
 
     std::vector<PageTab> tabs = {};  // after that of the report itself
@@ -129,8 +129,8 @@ void writeGradedTable(const GradedTable& table, std::ostream& out);
 /// How a content-security policy names the script.
 [[nodiscard]] std::string policyHash(const PageScript& script);
 
-/// The style sheet of all pages, and what switches between tabs.
+/// The style sheet of all pages, and their script: tabs, folds, and what scrolls.
 [[nodiscard]] std::string_view pageStyle();
-[[nodiscard]] PageScript tabsScript();
+[[nodiscard]] PageScript navigationScript();
 
 }  // namespace hashphase::demos

@@ -34,7 +34,7 @@ function(hashphase_bundle_style name file)
     set(${name} "${text}" PARENT_SCOPE)
 endfunction()
 
-hashphase_bundle_script(tabsScript report/tabs.js)
+hashphase_bundle_script(navigationScript report/navigation.js)
 hashphase_bundle_style(pageStyle report/page.css)
 configure_file(report/page_files.cpp.in page_files.cpp @ONLY)
 

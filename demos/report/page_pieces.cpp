@@ -83,13 +83,14 @@ std::string lookOf(Grade grade) {
 }
 
 std::string htmlOf(const GradedTable& table) {
-    std::string caption = escaped(table.caption) + "<br>";
+    std::string legend;
     for (std::size_t i = 0; i < table.legend.size(); ++i) {
         const GradedText meaning{table.legend[i] + " ", static_cast<Grade>(i + 1)};
-        caption +=
-            ' ' + tag("span class=\"" + lookOf(meaning.grade) + '"', escaped(meaning.marked()));
+        legend += (i > 0 ? " " : "") +
+                  tag("span class=\"" + lookOf(meaning.grade) + '"', escaped(meaning.marked()));
     }
     std::vector<Cell> header;
+    const std::string caption = tag("p", escaped(table.caption)) + tag("p", legend);
     for (const std::string& title : table.header) {
         header.push_back({title, header.size() > 1 ? "number" : ""});
     }

@@ -67,6 +67,7 @@ async function withJavaScript({ tab, evaluate }) {
         await scheme(tab, name);
         seen.inks.push(await evaluate(ink));
     }
+    await evaluate(`document.querySelectorAll("details").forEach((fold) => (fold.open = true))`);
     await tab("Input.dispatchMouseEvent", { type: "mouseMoved", ...(await evaluate(firstPoint)) });
     seen.tooltip = await evaluate(tooltip);
     seen.pdf = await print(tab);

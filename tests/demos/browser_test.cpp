@@ -108,6 +108,29 @@ void expectSound(const Json& page) {
     EXPECT_EQ(without["pdf"]["begin"], "%PDF");
 }
 
+TEST(Browser, LaysOutPagesOnWideAndNarrowScreensAndOnPaper) {
+    if (std::string(HASHPHASE_CHROMIUM).empty() || std::string(HASHPHASE_NODE).empty()) {
+        GTEST_SKIP() << "Chromium and Node.js are needed (Debian: chromium, npm).";
+    }
+    if (chartScripts().code.empty()) {
+        GTEST_SKIP() << chartScripts().whyNone;
+    }
+    const TemporaryFolder folder;
+    runProgramFor({"report", "--quick", "--html", folder.file("joined.html")});
+    runProgramFor({"accuracy", "--output", folder.file("accuracy")});
+    runProgramFor({"compare", "--scene", "stack", "--objects", "40", "--frames", "8", "--html",
+                   folder.file("compare.html")});
+    runProgramFor({"paper", "--quick", "--objects", "500,50000", "--frames", "2", "--time-limit",
+                   "3", "--html", folder.file("paper.html")});
+    std::string command =
+        "'" HASHPHASE_NODE "' '" HASHPHASE_BROWSE_LAYOUT_SCRIPT "' '" HASHPHASE_CHROMIUM "'";
+    for (const char* page :
+         {"joined.html", "accuracy/accuracy.html", "compare.html", "paper.html"}) {
+        command += " '" + folder.file(page) + "'";
+    }
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+}
+
 TEST(Browser, DrawsAllChartsUnderThePolicyOfThePage) {
     if (std::string(HASHPHASE_CHROMIUM).empty() || std::string(HASHPHASE_NODE).empty()) {
         GTEST_SKIP() << "Chromium and Node.js are needed (Debian: chromium, npm).";

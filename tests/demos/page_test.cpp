@@ -191,6 +191,18 @@ TEST(Page, SaysOnTopThatOtherProgramsKeptTheProcessorBusy) {
     EXPECT_EQ(count(text.str(), busy), 1U) << "on the terminal, too";
 }
 
+TEST(Page, FoldsUpTheSectionsOfItsPartsAndNoOthers) {
+    Page page = samplePage();
+    page.parts = {samplePage()};
+    const std::string html = withoutScripts(page);
+    EXPECT_NE(html.find("<section id=\"section-0\">\n<h2>Heading</h2>\n"), std::string::npos);
+    EXPECT_NE(html.find("<section id=\"part-1-section-0\">\n<details class=\"fold\">\n<summary>"
+                        "<h3>Heading</h3></summary>\n<p>Sentence</p>\n"),
+              std::string::npos);
+    EXPECT_EQ(count(html, "class=\"fold\""), 1U);
+    EXPECT_LT(html.rfind("Verdict"), html.find("class=\"fold\"")) << "seen without unfolding";
+}
+
 TEST(Provenance, IsOfADateASystemACommitAndABullet) {
     EXPECT_EQ(utcText(std::chrono::system_clock::time_point(std::chrono::seconds(1'764'421'507))),
               "2025-11-29T13:05:07Z");
@@ -262,7 +274,8 @@ TEST(Page, NeedsNothingElseAndRunsNoScriptButItsOwn) {
     }
     EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
     const std::string_view hash = chartScripts().hash;
-    EXPECT_NE(html.find("script-src '" + std::string(hash.empty() ? "none" : hash) + "';"),
+    const std::string charts = hash.empty() ? "" : "'" + std::string(hash) + "' ";
+    EXPECT_NE(html.find("script-src " + charts + "'" + policyHash(navigationScript()) + "';"),
               std::string::npos);
 }
 
@@ -278,7 +291,7 @@ TEST(Page, HoldsTheTabsOfItsPartsAndAdmitsTheirScripts) {
     EXPECT_NE(html.find("p { margin: 0; }</style>"), std::string::npos);
     EXPECT_NE(html.find("'sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU='"),
               std::string::npos);
-    EXPECT_NE(html.find("'" + policyHash(tabsScript()) + "'"), std::string::npos);
+    EXPECT_NE(html.find("'" + policyHash(navigationScript()) + "'"), std::string::npos);
     EXPECT_EQ(withoutScripts(samplePage()).find("role=\"tab\""), std::string::npos);
 }
 
