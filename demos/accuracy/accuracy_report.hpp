@@ -32,7 +32,9 @@ struct AccuracyReport {
 [[nodiscard]] std::vector<std::string> brokenChecks(const AccuracyReport& report);
 
 /// Task by task what is worth choosing: each method costs more than those before it and gets less
-/// wrong.
+/// wrong. Another's method is worth it only where none of ours gets as little wrong in a time that is at most
+/// 5 % longer, or of whose spread (from its 5th percentile on) the other's time is a part. The last column,
+/// the error, has other units in other tasks, and is for programs.
 [[nodiscard]] DataTable adviceTable(std::span<const Choice> choices);
 
 /// Experiment by experiment its tables, checks and conclusions; then the advice and the verdict.

@@ -175,7 +175,7 @@ private:
             for (const std::vector<Value>& row : found.rows) {
                 findings_.choices.push_back({textAt(row, 0), textAt(row, 1), numberAt(row, 2),
                                              numberAt(row, 3), textAt(row, 4),
-                                             numberAt(row, 5) != 0});
+                                             numberAt(row, 5) != 0, numberAt(row, 6)});
             }
         } else if (heading.contains("verdict")) {
             const std::vector<Value>& row = found.rows.at(0);

@@ -9,7 +9,8 @@
 //   {"settings": "how"}             sentences on scenes, sizes, truth; a row each
 //   {"conclusions": "what"}         sentences that the numbers show, bad news included; nulls are left out
 //   {"checks": "what"}              claim, holds, evidence
-//   {"choices": "what"}             task, method, milliseconds, error, result, ours
+//   {"choices": "what"}             task, method, milliseconds, error, result, ours, 5th percentile of the
+//                                   milliseconds
 //   {"table": "what"}               a table, of which a column "name: title" is headed by its title
 //   {"rows": "what"}                a table for the program itself, by that name
 //   {"chart": "P4-lost", "title": .., "settings": .., "mark": "bar", "x": "setting names", "y": "lost log"}
@@ -71,8 +72,9 @@ struct Choice {
     std::string method;  // "Sweep::line"
     double milliseconds = 0;  // a frame
     double error = 0;         // 0 is exact; comparable within a task
-    std::string result;       // the error in words: "misses 3.1 % of contacts"
+    std::string result;       // the error in words, with its unit: "misses 3.1 % of contacts"
     bool isOurs = true;       // else of the paper or of Bullet, for comparison
+    double low = 0;           // 5th percentile [ms]
 };
 
 struct Findings {

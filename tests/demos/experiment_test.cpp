@@ -136,7 +136,7 @@ SELECT iif(method = 'slow', method || ' is slow.', NULL) FROM frames;
 SELECT 'Frames are there', count(*) > 0, count(*) || ' of 3' FROM frames
 UNION ALL SELECT 'None is', count(*) = 0, 'so many' FROM frames;
 /* {"choices": "all"} */
-SELECT 'A task', method, ms, frame, 'in words', method = 'quick' FROM frames WHERE frame > 0;
+SELECT 'A task', method, ms, frame, 'in words', method = 'quick', ms - 1 FROM frames WHERE frame > 0;
 /* {"table": "times"} */
 SELECT method, ms AS "time: time of {n} [{unit}]" FROM frames;
 /* {"rows": "quick ones"} */
@@ -151,6 +151,7 @@ SELECT frame FROM frames WHERE method = 'quick'
     EXPECT_FALSE(findings.checks[1].holds);
     ASSERT_EQ(findings.choices.size(), 2U);
     EXPECT_EQ(findings.choices[1].milliseconds, 100);
+    EXPECT_EQ(findings.choices[1].low, 99);
     EXPECT_TRUE(findings.choices[0].isOurs && !findings.choices[1].isOurs);
     EXPECT_EQ(findings.tables.at(0).columns[1].name, "time");
     EXPECT_EQ(findings.tables[0].columns[1].title, "time of 3 [ ms]");
@@ -231,10 +232,10 @@ TEST(Findings, NameTheFaultOfADeclaration) {
     EXPECT_EQ(faultOf("/* {\"chart\": \"C\", \"mark\": \"cell\", \"x\": \"ms\", \"y\": \"ms\"} */ "
                       "SELECT ms FROM frames;"),
               "The chart 'C' has no shade.");
-    EXPECT_EQ(faultOf("/* {\"shown\": \"C\"} */ SELECT ms FROM frames;"),
     EXPECT_EQ(faultOf("/* {\"chart\": \"C\", \"mark\": \"bar\", \"x\": \"ms names\", \"y\": \"ms "
                       "log0\"} */ SELECT ms FROM frames;"),
               "The bars of 'C' cannot begin at 0 on a logarithmic axis: draw points.");
+    EXPECT_EQ(faultOf("/* {\"shown\": \"C\"} */ SELECT ms FROM frames;"),
               "Nothing is shown as {\"shown\":\"C\"}.");
     EXPECT_EQ(faultOf("SELEC 1;"), "near \"SELEC\": syntax error in: SELEC 1;");
 }

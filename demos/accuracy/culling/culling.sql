@@ -108,11 +108,11 @@ ORDER BY number, part;
 SELECT 'Culling, ' || thousands(objects) || ' objects: visible ones lost at worst', name, us / 1000,
        worst,
        iif(lost_in_all = 0, 'loses nothing', 'loses up to ' || number(worst) || ' % of what is visible')
-       || ', draws ' || number(in_vain_percent) || ' % in vain', ours
+       || ', draws ' || number(in_vain_percent) || ' % in vain', ours, low / 1000
 FROM timed, plan
 UNION ALL
 SELECT 'Culling, ' || thousands(objects) || ' objects: drawn in vain, none lost', name, us / 1000,
-       in_vain_percent, 'draws ' || number(in_vain_percent) || ' % in vain', ours
+       in_vain_percent, 'draws ' || number(in_vain_percent) || ' % in vain', ours, low / 1000
 FROM timed, plan WHERE lost_in_all = 0;
 
 /* {"conclusions": "losses"} */

@@ -84,7 +84,8 @@ SELECT * FROM shown WHERE rowid IN (SELECT rowid FROM did WHERE trial = :trial A
 
 /* {"choices": "in the showcases"} */
 SELECT 'All pairs of a frame: ' || name || ' boxes',
-       method || iif(factor IS NULL, '', ', ' || number(factor)), ms, missed_share, result, origin = 'ours'
+       method || iif(factor IS NULL, '', ', cells of ' || number(factor) || ' mean edges'), ms, missed_share,
+       result, origin = 'ours', ms_low
 FROM did WHERE trial IN (SELECT trial FROM showcases) AND ms IS NOT NULL;
 
 /* {"conclusions": "sizes"} */

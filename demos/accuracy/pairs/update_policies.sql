@@ -66,7 +66,7 @@ SELECT * FROM shown WHERE rowid IN (SELECT rowid FROM did WHERE trial = :trial);
 -- same way that tests them itself.
 /* {"choices": "by missed pairs"} */
 SELECT 'Pairs of ' || thousands(objects) || ' boxes, ' || motion, method, ms, missed_share, result,
-       origin = 'ours'
+       origin = 'ours', ms_low
 FROM did WHERE is_task AND NOT (origin = 'ours' AND complete AND NOT exact);
 
 /* {"conclusions": "where policies break even",

@@ -110,7 +110,7 @@ GROUP BY task;
 
 /* {"choices": "by what each task is about"} */
 SELECT task_title || ', one simulated second', method || ', steps of ' || setting, ms, error,
-       title || ': ' || error_text, ours
+       title || ': ' || error_text, ours, low
 FROM did WHERE measure = 0;
 
 /* {"conclusions": "our time against Bullet's"} */

@@ -26,7 +26,7 @@ ORDER BY run, number;
 -- In how many scenes bodies move as under brute force.
 CREATE TABLE sameness AS
 SELECT min(run) AS run, list, number, method, ours, exact, count(*) - count(differs) AS same,
-       (count(*) - count(differs)) || ' of ' || count(*) AS same_text, avg(ms) AS ms
+       (count(*) - count(differs)) || ' of ' || count(*) AS same_text, avg(ms) AS ms, avg(low) AS low
 FROM did GROUP BY list, method ORDER BY min(run), number;
 CREATE VIEW sentences AS
 SELECT list, group_concat(method || ' in ' || same_text, ', ') AS sentence
@@ -87,7 +87,7 @@ FROM sameness, texts WHERE list = 'canonical' AND exact AND method <> 'btSimpleB
 /* {"choices": "by scenes with another motion"} */
 SELECT 'A step of a Bullet world that moves as under brute force (mean of ' || scenes || ' scenes)',
        method || ', lists ' || list, ms, 1 - 1.0 * same / scenes,
-       'the same motion in ' || same_text || ' scenes', ours
+       'the same motion in ' || same_text || ' scenes', ours, low
 FROM sameness, texts ORDER BY run, number;
 
 -- Why the tree differs from brute force, as far as the runs tell.

@@ -133,7 +133,7 @@ SELECT claim, holds, evidence FROM (
 ORDER BY number, part;
 
 /* {"choices": "all boxes, the nearest box"} */
-SELECT task, method, frame_ms, error, result, ours FROM (
+SELECT task, method, frame_ms, error, result, ours, low_ms FROM (
     SELECT grazed.*, 1 AS part, 'All boxes on ' || texts.rays || ': missed' AS task,
            ifnull(missed_percent, 0) AS error,
            'misses ' || number(ifnull(missed_percent, 0)) || ' % of hits' AS result

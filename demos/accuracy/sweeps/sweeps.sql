@@ -165,7 +165,7 @@ FROM (SELECT * FROM did WHERE tells_time ORDER BY number);
 SELECT 'Fast movers: ' || thousands(plan.movers) || ' of ' || thousands(objects) || ' at ' || motion_text,
        method, ms, missed_share,
        iif(missed = 0, 'misses none of ' || thousands(contacts) || ' contacts',
-           'misses ' || number(100 * missed_share) || ' % of contacts'), origin = 'ours'
+           'misses ' || number(100 * missed_share) || ' % of contacts'), origin = 'ours', low
 FROM moved, plan WHERE invents_nothing ORDER BY motion_number, number;
 
 /* {"conclusions": "who misses bullets, and bodies"} */

@@ -131,7 +131,7 @@ ORDER BY number, part;
 
 /* {"choices": "what nobody sees is no error"} */
 SELECT 'Standing on hills, ' || thousands(spheres_per_frame) || ' spheres: depth by r', name, frame_ms,
-       iif(worst_depth <= radii, 0, depth), depth_text, ours
+       iif(worst_depth <= radii, 0, depth), depth_text, ours, low * spheres_per_frame / 1e6
 FROM timed, plan, seen ORDER BY timed.rowid;
 
 /* {"conclusions": "on steep terraces"} */
