@@ -216,54 +216,6 @@ TEST(Compare, WritesCsvWithALineForEveryFrameOfEveryBroadphase) {
     EXPECT_NE(lines[6].back(), ',') << "a dynamics scene has step times";
 }
 
-TEST(Compare, WritesAPageWithTheVerdictFirst) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("r.html");
-    const Typed outcome =
-        runCompare({"compare", "--objects", "50", "--frames", "8", "--html", path});
-    ASSERT_EQ(outcome.exitCode, kExitOk) << outcome.err;
-    const std::string html = readFile(path);
-    const std::size_t verdict = html.find("pair sets exact in every frame: yes.</p>");
-    EXPECT_LT(verdict, html.find("Are the pairs right?</h2>"));
-    EXPECT_NE(html.find(">holds</span><span>&#39;hash&#39; lists exactly the pairs"),
-              std::string::npos);
-    EXPECT_TRUE(holds(html, "id=\"compare-times\""));
-    EXPECT_TRUE(holds(html, "id=\"compare-trace\""));
-    EXPECT_FALSE(holds(html, "whole step")) << "boxes have no simulation";
-}
-
-TEST(Compare, WritesAPageWithoutChartsWhereNothingWasTimed) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("r.html");
-    runCompare({"compare", "--objects", "2000", "--time-limit", "0.000001", "--broadphases", "hash",
-                "--html", path});
-    const std::string page = readFile(path);
-    EXPECT_FALSE(holds(page, "id=\"compare-times\""));
-    EXPECT_TRUE(holds(page, "The time limit was reached after 0 of 120 frames."));
-    EXPECT_FALSE(holds(page, "class=\"verdict bad\"")) << "nothing was wrong";
-    EXPECT_FALSE(holds(page, "class=\"verdict\"")) << "nor was it checked";
-}
-
-TEST(Compare, DrawsManyFramesTogether) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("r.html");
-    runCompare({"compare", "--objects", "3", "--frames", "2511", "--broadphases", "hash,dbvt",
-                "--html", path, "--replay-frames", "0", "--csv", folder.file("r.csv")});
-    const std::string html = readFile(path);
-    const std::size_t trace = html.find("id=\"compare-trace\"");
-    ASSERT_NE(trace, std::string::npos);
-    EXPECT_NE(html.find("median of 3 frames, from the least to the most", trace),
-              std::string::npos);
-    std::size_t rows = 0;
-    const std::size_t end = html.find("</figure>", trace);
-    for (std::size_t at = trace; (at = html.find("<tr>", at + 1)) < end;) {
-        ++rows;
-    }
-    EXPECT_EQ(rows, 1 + 2 * 834U) << "2,501 frames were timed";
-    const std::string text = readFile(folder.file("r.csv"));
-    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 2 * 2511) << "all of them";
-}
-
 TEST(Compare, RefusesResultFilesThatCannotBeWritten) {
     const TemporaryFolder folder;
     const std::string path = folder.file("none/r");
