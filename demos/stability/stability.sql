@@ -31,10 +31,14 @@ SELECT iif(EXISTS (SELECT 1 FROM kinds WHERE ours),
 FROM run;
 
 CREATE VIEW cells AS
-SELECT id, name, broadphase, text
-FROM (SELECT cases.rowid AS turn, cases.id, name, outcomes.rowid AS place, broadphase, text
+SELECT id, name, broadphase, text, grade
+FROM (SELECT cases.rowid AS turn, cases.id, name, outcomes.rowid AS place, broadphase, text,
+             CASE WHEN outcome = 'exact' THEN 'good' WHEN outcome IN ('extra', 'costly', 'refuses') THEN 'fair'
+                  WHEN outcome <> 'nothing' THEN 'poor' END AS grade
       FROM cases JOIN outcomes USING (id)
-      UNION ALL SELECT rowid, id, name, 1e9, 'verdict', verdict FROM judged)
+      UNION ALL
+      SELECT rowid, id, name, 1e9, 'verdict', verdict, CASE holds WHEN 1 THEN 'good' WHEN 0 THEN 'poor' END
+      FROM judged)
 ORDER BY turn, place;
 
 CREATE VIEW texts AS
@@ -57,11 +61,15 @@ FROM judged, run WHERE is_explained OR holds = 0;
 
 -- --- On the page ----------------------------------------------------------------------------------
 
-/* {"sentences": "legend", "section": "What each one does"} */
-SELECT legend || '.' FROM texts;
+/* {"sentences": "what is in a cell", "section": "What each one does"} */
+SELECT 'A row for each case, a column for each broadphase, and whether hashphase does what is required. ' || legend
+       || '.'
+FROM texts;
 
-/* {"table": "all", "section": "What each one does", "spread": true} */
-SELECT id, name AS "case", broadphase, text FROM cells;
+/* {"graded": "What each broadphase does in each case",
+    "legend": ["exact, as required", "too many answers, too high a cost, or refused", "wrong, hangs, or crashes"],
+    "section": "What each one does"} */
+SELECT id, name AS "case", broadphase, text, grade FROM cells;
 
 /* {"each": "SELECT id, name FROM cases", "sentences": "case", "section": "{:id || ' ' || :name}"} */
 SELECT 'Input: ' || input || '.' FROM judged WHERE id = :id

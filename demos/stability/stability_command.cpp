@@ -105,7 +105,7 @@ std::string shortCount(std::uint64_t count) {
 }
 
 std::string costText(double ratio) {
-    return ' ' + fixed(ratio, ratio < 9.95 ? 1 : 0) + "x";
+    return ratio < 0.05 ? " <0.1x" : ' ' + fixed(ratio, ratio < 9.95 ? 1 : 0) + "x";
 }
 
 std::string countsText(const CaseOutcome& outcome) {

@@ -141,10 +141,13 @@ TEST(Stability, WritesJsonCsvAndAPage) {
 
     std::ifstream htmlFile(html);
     const std::string page{std::istreambuf_iterator<char>(htmlFile), {}};
-    for (const char* text : {"Content-Security-Policy", "default-src 'none'",
-                             "H9 eight boxes at a "
-                             "cell&#39;s corner",
-                             "2 of 2 hard cases hold"}) {
+    for (const char* text :
+         {"Content-Security-Policy", "default-src 'none'",
+          "H9 eight boxes at a "
+          "cell&#39;s corner",
+          "2 of 2 hard cases hold", "<td>eight boxes at a cell&#39;s corner</td>",
+          "<td class=\"number good\">exact", "<td class=\"number good\">holds</td>",
+          "<td class=\"number\">-</td>", "wrong, hangs, or crashes !</span>"}) {
         EXPECT_NE(page.find(text), std::string::npos) << text;
     }
 }
