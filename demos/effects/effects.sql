@@ -104,6 +104,14 @@ FROM compared JOIN differences AS alone ON alone.effect = compared.effect AND al
      LEFT JOIN said ON said.effect = compared.effect
 ORDER BY compared.rowid;
 
+-- Next to the prices: why a time is below zero.
+CREATE TABLE below_zero AS
+SELECT effect || ' ' || which || ', ' || ms(ms) || ' ms: '
+       || iif(high > 0, 'less than the frames differ (' || ms(low) || ' to ' || ms(high)
+                        || ' ms), so nothing that can be measured.',
+              'a frame takes less time with the effect, which spares others more work than it takes.') AS sentence
+FROM (SELECT * FROM differences WHERE ms < 0 ORDER BY price, which);
+
 CREATE TABLE checks AS
 SELECT 'What is not declared does nothing and takes no memory' AS claim, strays IS NULL AS holds,
        ifnull('not 0:' || strays, thousands(zeros) || ' counters and tables of undeclared effects are 0')
@@ -137,6 +145,7 @@ FROM prices;
 /* {"rows": "below"} */
 SELECT '' UNION ALL
 SELECT 'alone: with what it needs, less these; in all: the whole scene, less all but it and what needs it'
+UNION ALL SELECT sentence FROM below_zero
 UNION ALL SELECT '' UNION ALL
 SELECT substr(effect || '              ', 1, 14) || work || char(10) || '              without: ' || lost
 FROM prices
@@ -149,7 +158,8 @@ UNION ALL SELECT 'The time limit was reached.' FROM run WHERE limit_hit;
 /* {"sentences": "what they are", "section": "The price list"} */
 SELECT 'Alone: the effect and what it needs, less what it needs. Within all: the whole scene, less the scene '
        || 'without the effect and without what needs it. They differ where effects share work: the grid is '
-       || 'filed once for all that ask it.';
+       || 'filed once for all that ask it.'
+UNION ALL SELECT sentence FROM below_zero;
 
 /* {"conclusions": "time limit", "section": "The price list"} */
 SELECT 'The time limit was reached after ' || frames || ' frames.' FROM texts WHERE limit_hit;
@@ -157,22 +167,28 @@ SELECT 'The time limit was reached after ' || frames || ' frames.' FROM texts WH
 /* {"checks": "all", "section": "The price list"} */
 SELECT claim, holds, evidence FROM checks;
 
+/* {"sentences": "what is drawn", "section": "The prices, drawn"} */
+SELECT 'Bars are medians. Lines reach from the 5th to the 95th percentile of the frames. A bar below zero: a '
+       || 'frame takes less time with the effect than without it; the price list says why.';
+
 /* {"chart": "effects-time", "title": "What each effect costs in time",
     "settings": "{scene}; medians of {frames} frames", "mark": "bar", "x": "effect names", "y": "amount",
-    "series": "price", "low": "low", "high": "high", "section": "The price list"} */
-SELECT effect, which AS price, ms AS "amount: ms a frame", low, high FROM differences ORDER BY differences.price, which;
+    "series": "price", "low": "low", "high": "high", "section": "The prices, drawn"} */
+SELECT effect, which AS price, ms AS "amount: time [ms a frame]", low AS "low: 5th percentile [ms]",
+       high AS "high: 95th percentile [ms]"
+FROM differences ORDER BY differences.price, which;
 
 /* {"chart": "effects-bytes", "title": "What each effect takes of memory",
-    "settings": "{scene}; medians of {frames} frames", "mark": "bar", "x": "effect names", "y": "amount",
-    "series": "price", "section": "The price list"} */
-SELECT effect, price, kib AS "amount: KiB", kib AS low, kib AS high
+    "settings": "{scene}; memory of all tables", "mark": "bar", "x": "effect names",
+    "y": "amount", "series": "price", "section": "The prices, drawn"} */
+SELECT effect, price, kib AS "amount: memory [KiB]"
 FROM (SELECT rowid AS turn, effect, 'alone' AS price, alone_bytes / 1024.0 AS kib FROM prices
       UNION ALL SELECT rowid, effect, 'within all', in_all_bytes / 1024.0 FROM prices)
 ORDER BY turn, price;
 
 /* {"table": "prices", "section": "The price list"} */
 SELECT effect, alone_ms AS "alone_ms: alone [ms]", in_all_ms AS "in_all_ms: within all [ms]",
-       alone_bytes AS "bytes_alone: bytes alone", in_all_bytes AS "bytes_in_all: bytes within all",
+       alone_bytes / 1024.0 AS "kib_alone: alone [KiB]", in_all_bytes / 1024.0 AS "kib_in_all: within all [KiB]",
        work AS "work: a frame", lost AS "lost: without it"
 FROM prices;
 

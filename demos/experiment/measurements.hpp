@@ -10,8 +10,8 @@
 //                                         the 95 % interval of a share (binomial.hpp); null of nothing
 //   interval_low(hits, trials, frames)    the same over frames in which the same objects are met again
 //   thousands(n), number(x), fixed(x, digits), ms(x), bytes(n)
-//                                         as people read them (format.hpp, data_table.hpp); of nothing
-//                                         number() is "-", and the others null
+//                                         as people read them (format.hpp, data_table.hpp); ms() is of a time in
+//                                         any unit; of nothing number() is "-", and the others null
 //   median(x), percentile(x, share)       aggregates; null of nothing
 
 #include <demos/report/data_table.hpp>

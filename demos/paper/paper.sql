@@ -313,8 +313,8 @@ FROM cells WHERE phase = :phase ORDER BY cells.objects, line, place;
     "settings": "{medians}, 5th to 95th percentile; one thread", "x": "objects log", "y": "ms log",
     "series": "method", "low": "low", "high": "high", "theory": "limit",
     "section": "Figure {:figure}: {:phase}", "each": "SELECT * FROM phases"} */
-SELECT name AS method, objects, ms AS "ms: frame [ms]", low, high,
-       50.0 AS "limit: 20 frames a second: 50 ms"
+SELECT name AS method, objects, ms AS "ms: frame [ms]", low AS "low: 5th percentile [ms]",
+       high AS "high: 95th percentile [ms]", 50.0 AS "limit: 20 frames a second: 50 ms"
 FROM timed WHERE part = 'figure' AND phase = :phase AND ms IS NOT NULL AND (cell IS NULL OR cell IN (5, 100))
 ORDER BY timed.method = 'hashphase', timed.method = 'paper''s grid', cell IS NULL, cell, objects;
 
@@ -355,7 +355,8 @@ FROM timed JOIN memory USING (run) WHERE part = 'cell size' AND method = 'hashph
 -- Automatic cells have the size that was chosen.
 CREATE VIEW cell_sizes AS
 SELECT iif(cell IS NULL, name, method) AS method, coalesce(cell, chosen_cell) AS "cell: cell [m]",
-       ms AS "ms: frame [ms]", low, high, bytes / 1048576.0 AS "mebibytes: memory [MiB]"
+       ms AS "ms: frame [ms]", low AS "low: 5th percentile [ms]", high AS "high: 95th percentile [ms]",
+       bytes / 1048576.0 AS "mebibytes: memory [MiB]"
 FROM timed JOIN memory USING (run) WHERE part = 'cell size'
 ORDER BY timed.method = 'hashphase', timed.rowid;
 
@@ -380,8 +381,8 @@ FROM volumes LIMIT 1;
 
 CREATE VIEW bounding_volumes AS
 SELECT volume AS "volume: first pass by", avg(candidates) AS "candidates: pairs from the grid",
-       avg(passed) AS "passed: pass", avg(passed) - avg(touching) AS "false: of these, false",
-       avg(touching) AS "touching: touch", median(first_ms) AS "first_ms: first pass [ms]",
+       avg(passed) AS "passed: pairs that pass", avg(passed) - avg(touching) AS "false: pairs that pass in vain",
+       avg(touching) AS "touching: pairs that touch", median(first_ms) AS "first_ms: first pass [ms]",
        median(exact_ms) AS "exact_ms: exact test [ms]",
        median(first_ms) + median(exact_ms) AS "ms: together [ms]"
 FROM volumes GROUP BY volume ORDER BY min(rowid);

@@ -4,6 +4,7 @@
 #include <demos/console/format.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <ostream>
@@ -35,6 +36,21 @@ std::string csvField(const Value& value) {
     return quoted + '"';
 }
 
+std::string signedThousands(double number) {
+    const std::string digits =
+        withThousands(static_cast<std::uint64_t>(std::llround(std::abs(number))));
+    return number < 0 ? "-" + digits : digits;
+}
+
+bool isOfTimes(const DataColumn& column) {
+    constexpr std::array<std::string_view, 9> kUnits{
+        "[ms]", "[ms ", "[us]", "[ns]", "[ns ", "[ns/", "[s]", "[times ", "times as fast"};
+    const std::string& title = titleOf(column);
+    return std::any_of(kUnits.begin(), kUnits.end(), [&](std::string_view unit) {
+        return title.find(unit) != std::string::npos;
+    });
+}
+
 }  // namespace
 
 std::size_t DataTable::columnOf(std::string_view name) const {
@@ -58,16 +74,30 @@ std::string valueText(const Value& value) {
     if (number == nullptr || !std::isfinite(*number)) {
         return "-";
     }
-    const double size = std::abs(*number);
-    if (size >= 1000 && size < 1e15) {
-        const std::string digits = withThousands(static_cast<std::uint64_t>(std::llround(size)));
-        return *number < 0 ? "-" + digits : digits;
+    if (std::abs(*number) >= 1000 && std::abs(*number) < 1e15) {
+        return signedThousands(*number);
     }
     char digits[32];
     const auto end =
         std::to_chars(std::begin(digits), std::end(digits), *number, std::chars_format::general, 4)
             .ptr;
     return {std::begin(digits), end};
+}
+
+std::string cellText(const Value& value, const DataColumn& column) {
+    const double* number = std::get_if<double>(&value);
+    if (number == nullptr || !std::isfinite(*number) || *number == 0 || !isOfTimes(column)) {
+        return valueText(value);
+    }
+    // The power of ten of the first digit, once rounded: 9.999 is 10.0.
+    const double size = std::abs(*number);
+    int power = static_cast<int>(std::floor(std::log10(size)));
+    power += size >= 9.995 * std::pow(10, power) ? 1 : 0;
+    if (power >= 3) {
+        const double step = std::pow(10, power - 2);
+        return signedThousands(std::round(*number / step) * step);
+    }
+    return fixed(*number, 2 - power);
 }
 
 DataTable withoutEmptyColumns(const DataTable& table) {
@@ -111,7 +141,7 @@ void printTable(const DataTable& table, std::ostream& out, bool isOfWords) {
         lines[0].push_back(titleOf(table.columns[column]));
         std::size_t width = lines[0].back().size();
         for (std::size_t row = 0; row < table.rows.size(); ++row) {
-            lines[row + 1].push_back(valueText(table.rows[row].at(column)));
+            lines[row + 1].push_back(cellText(table.rows[row].at(column), table.columns[column]));
             width = std::max(width, lines[row + 1].back().size());
         }
         widths.push_back(width);

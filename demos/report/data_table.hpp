@@ -37,6 +37,10 @@ struct DataTable {
 /// As people read it: four significant digits, thousands separated, "-" for nothing.
 [[nodiscard]] std::string valueText(const Value& value);
 
+/// As people read it under that title. Of times, and of ratios of them ("[ms]", "[ns/object]", "times as fast"), no
+/// more than three digits are worth anything: "0.120", "12.0", "1,230".
+[[nodiscard]] std::string cellText(const Value& value, const DataColumn& column);
+
 /// Without the columns that have nothing in any row.
 [[nodiscard]] DataTable withoutEmptyColumns(const DataTable& table);
 

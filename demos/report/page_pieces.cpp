@@ -66,8 +66,9 @@ std::string htmlOf(const DataTable& table) {
     std::vector<std::vector<Cell>> rows;
     for (const std::vector<Value>& values : table.rows) {
         std::vector<Cell> row;
-        for (const Value& value : values) {
-            row.push_back({valueText(value), isText(value) ? "" : "number"});
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            row.push_back(
+                {cellText(values[i], table.columns[i]), isText(values[i]) ? "" : "number"});
         }
         rows.push_back(std::move(row));
     }
@@ -89,8 +90,8 @@ std::string htmlOf(const GradedTable& table) {
         legend += (i > 0 ? " " : "") +
                   tag("span class=\"" + lookOf(meaning.grade) + '"', escaped(meaning.marked()));
     }
-    std::vector<Cell> header;
     const std::string caption = tag("p", escaped(table.caption)) + tag("p", legend);
+    std::vector<Cell> header;
     for (const std::string& title : table.header) {
         header.push_back({title, header.size() > 1 ? "number" : ""});
     }

@@ -45,6 +45,30 @@ TEST(DataTable, ShowsFourDigitsAndThousands) {
     EXPECT_EQ(valueText("as it is"), "as it is");
 }
 
+TEST(DataTable, ShowsThreeDigitsOfTimesAndOfTheirRatios) {
+    for (const char* title : {"frame [ms]", "median [ms a frame]", "time [ns/object]",
+                              "a look [us]", "a ray [times Bullet's]", "times as fast as dbvt"}) {
+        EXPECT_EQ(cellText(12.3456, {"t", title}), "12.3") << title;
+    }
+    for (const char* title :
+         {"missed [share of the true pairs]", "memory [KiB]", "frames", "cell [m]"}) {
+        EXPECT_EQ(cellText(12.3456, {"n", title}), "12.35") << title;
+    }
+    const DataColumn time{"ms", "frame [ms]"};
+    EXPECT_EQ(cellText(0.00012, time), "0.000120");
+    EXPECT_EQ(cellText(0.1, time), "0.100");
+    EXPECT_EQ(cellText(9.996, time), "10.0");
+    EXPECT_EQ(cellText(999.6, time), "1,000");
+    EXPECT_EQ(cellText(123'456.0, time), "123,000");
+    EXPECT_EQ(cellText(-1999.6, time), "-2,000");
+    EXPECT_EQ(cellText(0.0, time), "0");
+    EXPECT_EQ(cellText(Value(), time), "-");
+    EXPECT_EQ(cellText("1/60 s", time), "1/60 s");
+    std::ostringstream out;
+    printTable({{{"name"}, time}, {{"hash", 1.23456}}}, out);
+    EXPECT_NE(out.str().find("1.23\n"), std::string::npos) << out.str();
+}
+
 TEST(DataTable, IsAlignedInTextAndLeavesNoBlanksAtLineEnds) {
     const DataTable table{{{"name"}, {"ms"}, {"note"}},
                           {{"hash", "1.5", ""}, {"dbvt-deferred", 12.25, "x"}}};

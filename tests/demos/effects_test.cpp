@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -47,6 +48,16 @@ struct Priced {
     }
 
     [[nodiscard]] std::string ask(std::string_view sql) { return asked(measured, sql); }
+
+    /// What is found of it now that some of it was changed.
+    [[nodiscard]] Findings findAgain() {
+        for (const char* made : {"spreads", "means", "parts", "said", "differences", "prices",
+                                 "below_zero", "checks", "figures"}) {
+            measured.ask("DROP TABLE " + std::string(made));
+        }
+        measured.ask("DROP VIEW texts");
+        return effectsFindings(measured);
+    }
 
     /// Of the whole scene, or of it without that.
     [[nodiscard]] double mean(const std::string& name, const std::string& without = {}) {
@@ -173,17 +184,36 @@ TEST(EffectPrices, SayWhatIsNotAsItMustBe) {
     Priced priced(smallExample("projectiles"), 1);
     priced.measured.ask("UPDATE numbers SET number = 3 WHERE variant = 2 AND name = 'boxesTested'");
     priced.measured.ask("UPDATE results SET differs = 1 WHERE rowid = 1");
-    for (const char* made :
-         {"spreads", "means", "parts", "said", "differences", "prices", "checks", "figures"}) {
-        priced.measured.ask("DROP TABLE " + std::string(made));
-    }
-    priced.measured.ask("DROP VIEW texts");
-    const Findings broken = effectsFindings(priced.measured);
+    const Findings broken = priced.findAgain();
     EXPECT_EQ(broken.holds, false);
     EXPECT_TRUE(has(broken.verdict, "; A CHECK FAILED, see above"));
     const std::vector<Check>& checks = broken.sections.at(0).checks;
     EXPECT_EQ(checks.at(0).evidence, "not 0: boxesTested with " + namesOf({}) + ";");
     EXPECT_EQ(checks.at(1).evidence.substr(0, 5), "1 of ");
+}
+
+// The scene takes 1 ms, without sweeps 2 ms, and without responses as much, more or less.
+TEST(EffectPrices, ExplainATimeBelowZeroBesideIt) {
+    Priced priced(smallExample("projectiles"), 20);
+    priced.measured.ask("UPDATE frames SET ms = 1");
+    priced.measured.ask(
+        "UPDATE frames SET ms = 2 WHERE variant = (SELECT all_without FROM compared WHERE effect = "
+        "'sweep')");
+    priced.measured.ask(
+        "UPDATE frames SET ms = iif(frame % 4 = 0, 0.5, 1.25) WHERE variant = (SELECT all_without "
+        "FROM compared WHERE effect = 'response')");
+    const Findings found = priced.findAgain();
+    const std::vector<std::string>& onPage = found.sections.at(0).sentences;
+    const std::vector<std::string> onTerminal = sentencesOf(found.rows.at("below"));
+    for (const char* sentence :
+         {"sweep within all, -1.00 ms: a frame takes less time with the effect, which spares "
+          "others more work than it takes.",
+          "response within all, -0.250 ms: less than the frames differ (-0.250 to 0.500 ms), so "
+          "nothing that can be measured."}) {
+        EXPECT_EQ(std::ranges::count(onPage, sentence), 1) << sentence;
+        EXPECT_EQ(std::ranges::count(onTerminal, sentence), 1) << sentence;
+    }
+    EXPECT_EQ(onPage.size(), 3U) << "nothing else is below zero";
 }
 
 }  // namespace

@@ -71,9 +71,9 @@ TEST(Html, WritesARepeatedFirstTextOnce) {
     EXPECT_EQ(out.str(),
               "<div class=\"table\"><table>\n<thead><tr><th scope=\"col\">task</th>"
               "<th scope=\"col\" class=\"number\">time [ms]</th></tr></thead>\n<tbody>\n"
-              "<tr><td rowspan=\"2\">a</td><td class=\"number\">1.5</td></tr>\n"
+              "<tr><td rowspan=\"2\">a</td><td class=\"number\">1.50</td></tr>\n"
               "<tr><td class=\"number\">-</td></tr>\n"
-              "<tr><td>b</td><td class=\"number\">3</td></tr>\n</tbody></table></div>\n");
+              "<tr><td>b</td><td class=\"number\">3.00</td></tr>\n</tbody></table></div>\n");
 }
 
 TEST(Page, EscapesTextsFromData) {

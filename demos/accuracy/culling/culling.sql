@@ -49,8 +49,8 @@ UNION ALL VALUES
     "settings": "{scene}", "mark": "point", "x": "setting names", "y": "lost", "series": "method",
     "low": "low", "high": "high"} */
 SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
-       100 * interval_low(lost, max(visible, 1)) AS low,
-       100 * interval_high(lost, max(visible, 1)) AS high,
+       100 * interval_low(lost, max(visible, 1)) AS "low: at least [%]",
+       100 * interval_high(lost, max(visible, 1)) AS "high: at most, 95 % sure [%]",
        in_vain_percent AS "in_vain: drawn in vain [% of visible]",
        cells AS "cells: cells a frame", boxes AS "boxes: boxes tested a frame"
 FROM did WHERE scene = 'ground';
@@ -58,8 +58,8 @@ FROM did WHERE scene = 'ground';
 /* {"chart": "P4-overdraw", "title": "Objects that are drawn though nothing of them is visible",
     "settings": "{scene}", "mark": "point", "x": "setting names", "y": "in_vain", "series": "method"} */
 SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
-       100 * interval_low(lost, max(visible, 1)) AS low,
-       100 * interval_high(lost, max(visible, 1)) AS high,
+       100 * interval_low(lost, max(visible, 1)) AS "low: at least [%]",
+       100 * interval_high(lost, max(visible, 1)) AS "high: at most, 95 % sure [%]",
        in_vain_percent AS "in_vain: drawn in vain [% of visible]",
        cells AS "cells: cells a frame", boxes AS "boxes: boxes tested a frame"
 FROM did WHERE scene = 'ground';
@@ -80,11 +80,11 @@ SELECT method, label AS "cell: cells", us AS "time: a look [us]",
 FROM timed WHERE lost_in_all = 0;
 
 /* {"table": "times"} */
-SELECT timed.name AS method, timed.us AS "time: a look [us]", timed.low AS "low: 5 % [us]",
-       timed.high AS "high: 95 % [us]", timed.us / bullet.us AS "ratio: of Bullet's time",
+SELECT timed.name AS method, timed.us AS "time: a look [us]", timed.low AS "low: 5th percentile [us]",
+       timed.high AS "high: 95th percentile [us]", timed.us / bullet.us AS "ratio: a look [times Bullet's]",
        timed.lost_percent AS "lost: visible, lost [%]",
        timed.in_vain_percent AS "in_vain: drawn in vain [%]",
-       iif(timed.method = bullet.method, NULL, timed.cells) AS "cells: cells or rows",
+       iif(timed.method = bullet.method, NULL, timed.cells) AS "cells: cells or rows of cells",
        iif(timed.method = bullet.method, NULL, timed.boxes) AS "boxes: boxes tested"
 FROM timed LEFT JOIN bullet;
 
@@ -125,8 +125,8 @@ SELECT method || ' loses ' || number(lost_percent) || ' % of ' || thousands(visi
 FROM did WHERE scene = 'touching' AND lost > 0;
 
 /* {"conclusions": "times"} */
-SELECT timed.name || ': a look takes ' || number(timed.us) || ' us, ' || bullet.method || ' '
-       || number(bullet.us) || ' us; drawn in vain are ' || number(timed.in_vain_percent) || ' % and '
+SELECT timed.name || ': a look takes ' || ms(timed.us) || ' us, ' || bullet.method || ' '
+       || ms(bullet.us) || ' us; drawn in vain are ' || number(timed.in_vain_percent) || ' % and '
        || number(bullet.in_vain_percent) || ' %.'
 FROM timed, bullet WHERE timed.must_see_all AND NOT timed.takes_cells;
 )sql"

@@ -35,21 +35,21 @@ FROM did WHERE NOT complete AND factor >= largest_edge;
 
 /* {"chart": "P2-time", "title": "Time an object and frame, by the size of the finest cells",
     "settings": "{scene}", "mark": "cell", "x": "cell names", "y": "population names", "shade": "ns log"} */
-SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell / mean edge",
+SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell [mean edges]",
        name AS "population: population, objects", ns AS "ns: time [ns/object]"
 FROM did WHERE origin = 'ours';
 
 /* {"chart": "P2-memory", "title": "Memory an object, by the size of the finest cells",
     "settings": "{scene}", "mark": "cell", "x": "cell names", "y": "population names",
     "shade": "bytes log"} */
-SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell / mean edge",
+SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell [mean edges]",
        name AS "population: population, objects", 1.0 * bytes / objects AS "bytes: memory [bytes/object]"
 FROM did WHERE origin = 'ours';
 
 CREATE VIEW regrets AS
 SELECT name AS population, automatic_ns AS "automatic_ns: automatic [ns/object]",
        best_ns AS "best_ns: best fixed [ns/object]",
-       number(best_factor) AS "best_cell: best cell / mean edge",
+       number(best_factor) AS "best_cell: best cell [mean edges]",
        100 * regret AS "regret_percent: automatic is slower by [%]"
 FROM contests WHERE regret IS NOT NULL;
 
@@ -63,10 +63,11 @@ SELECT * FROM regrets;
 
 -- A row for each of `did`, under the same rowid.
 CREATE TABLE shown AS
-SELECT method, factor AS "cell: cell / mean edge", ns AS "ns: time [ns/object]",
+SELECT method, factor AS "cell: cell [mean edges]", ns AS "ns: time [ns/object]",
        speed AS "speed: times as fast as btDbvtBroadphase", true_pairs AS "true_pairs: true pairs judged",
-       missed AS "missed: missed pairs", missed_share AS "missed_share: missed share of the true pairs",
-       low AS "missed_low: at least", high AS "missed_high: at most (95 %)", extra AS "false: false pairs",
+       missed AS "missed: missed pairs", missed_share AS "missed_share: missed pairs [share of the true pairs]",
+       low AS "missed_low: at least [share]", high AS "missed_high: at most, 95 % sure [share]",
+       extra AS "false: false pairs",
        extra_share AS "false_share: false pairs a true pair",
        tested * frames / true_pairs AS "tests: boxes compared a true pair",
        1.0 * bytes / objects AS "bytes: memory [bytes/object]"

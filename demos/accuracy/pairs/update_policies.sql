@@ -14,8 +14,9 @@ CREATE TABLE shown AS
 SELECT method AS policy, motion AS "motion: how many boxes move, and how far",
        100 * share AS "moving_percent: boxes that move [%]", ns AS "ns: time [ns/object]",
        speed AS "speed: times as fast as btDbvtBroadphase", true_pairs AS "true_pairs: true pairs judged",
-       missed AS "missed: missed pairs", missed_share AS "missed_share: missed share of the true pairs",
-       low AS "missed_low: at least", high AS "missed_high: at most (95 %)", extra AS "false: false pairs",
+       missed AS "missed: missed pairs", missed_share AS "missed_share: missed pairs [share of the true pairs]",
+       low AS "missed_low: at least [share]", high AS "missed_high: at most, 95 % sure [share]",
+       extra AS "false: false pairs",
        extra_share AS "false_share: false pairs a true pair"
 FROM results;
 

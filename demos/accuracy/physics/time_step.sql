@@ -46,25 +46,25 @@ UNION ALL VALUES
 ('Contacts that keep energy: setContactProcessingThreshold(0), so that only what touches is in contact, and m_splitImpulsePenetrationThreshold above 0, so that overlap is undone without adding speed.');
 
 /* {"table": "all"} */
-SELECT task_name AS task, name || iif(unit = '', '', ' [' || unit || ']') AS "error: error, root mean square",
+SELECT task_name AS task, name AS "error: error, root mean square",
        step AS "step_s: step", iterations, iif(keeps_energy, 'keep energy', 'as shipped') AS contacts,
        iif(same, 'yes', 'no') AS "same: same states in canonical order",
-       max(iif(contestant = 0, error, NULL))
+       max(iif(contestant = 0, error_text, NULL))
        AS "hashphase, lists in canonical order error: hashphase, lists in canonical order: error",
-       max(iif(contestant = 0, ms, NULL)) AS "hashphase, lists in canonical order ms: ms a simulated second",
-       max(iif(contestant = 1, error, NULL))
+       max(iif(contestant = 0, ms, NULL)) AS "hashphase, lists in canonical order ms: a simulated second [ms]",
+       max(iif(contestant = 1, error_text, NULL))
        AS "btDbvtBroadphase, lists in canonical order error: btDbvtBroadphase, lists in canonical order: error",
        max(iif(contestant = 1, ms, NULL))
-       AS "btDbvtBroadphase, lists in canonical order ms: ms a simulated second",
-       max(iif(contestant = 2, error, NULL)) AS "hashphase error: hashphase: error",
-       max(iif(contestant = 2, ms, NULL)) AS "hashphase ms: ms a simulated second",
-       max(iif(contestant = 3, error, NULL)) AS "btDbvtBroadphase error: btDbvtBroadphase: error",
-       max(iif(contestant = 3, ms, NULL)) AS "btDbvtBroadphase ms: ms a simulated second"
+       AS "btDbvtBroadphase, lists in canonical order ms: a simulated second [ms]",
+       max(iif(contestant = 2, error_text, NULL)) AS "hashphase error: hashphase: error",
+       max(iif(contestant = 2, ms, NULL)) AS "hashphase ms: a simulated second [ms]",
+       max(iif(contestant = 3, error_text, NULL)) AS "btDbvtBroadphase error: btDbvtBroadphase: error",
+       max(iif(contestant = 3, ms, NULL)) AS "btDbvtBroadphase ms: a simulated second [ms]"
 FROM did JOIN sameness USING (point) GROUP BY point, measure ORDER BY point, measure;
 
 -- Of each task a chart for each measure, then one of all ways, and one of theory.
 CREATE VIEW shown AS
-SELECT *, title || ', root mean square' || iif(unit = '', '', ' [' || unit || ']') AS axis, column1 AS kind
+SELECT *, title || ', root mean square' || iif(unit = '', ' [share]', ' [' || unit || ']') AS axis, column1 AS kind
 FROM measures, (VALUES (1), (2), (3))
 WHERE kind = 1 OR measure = 0 AND (kind = 2 OR task_name = 'fall') ORDER BY task, kind, measure;
 
@@ -73,8 +73,8 @@ WHERE kind = 1 OR measure = 0 AND (kind = 2 OR task_name = 'fall') ORDER BY task
     "y": "error log0", "series": "method", "label": "step_s", "front": true,
     "each": "SELECT * FROM shown", "when": "{:kind = 1}"} */
 SELECT method, step AS "step_s: step", ms AS "second_ms: time of a simulated second [ms]",
-       low AS "low_ms: 5 % [ms]", high AS "high_ms: 95 % [ms]",
-       1000.0 / ms AS "real_time_factor: real-time factor", error AS "error: {:axis}"
+       low AS "low_ms: 5th percentile [ms]", high AS "high_ms: 95th percentile [ms]",
+       1000.0 / ms AS "real_time_factor: speed [times real time]", error AS "error: {:axis}"
 FROM did WHERE task = :task AND measure = :measure AND by_steps AND NOT keeps_energy
 ORDER BY contestant, point;
 

@@ -56,10 +56,10 @@ FROM words GROUP BY run ORDER BY run;
 
 CREATE VIEW step_times AS
 SELECT did.scene, did.objects, did.method, did.ms AS "step_ms: step [ms]",
-       did.low AS "low_ms: 5 % of steps [ms]", did.high AS "high_ms: 95 % of steps [ms]",
-       1000 / 60.0 / did.ms AS "real_time_factor: real-time factor",
+       did.low AS "low_ms: 5th percentile [ms]", did.high AS "high_ms: 95th percentile [ms]",
+       1000 / 60.0 / did.ms AS "real_time_factor: speed [times real time]",
        dbvt.ms / did.ms AS "ratio_to_dbvt: times as fast as btDbvtBroadphase",
-       did.pairs AS "pairs: pairs at the end", 1.0 * did.asleep / steps AS "asleep: asleep on average"
+       did.pairs AS "pairs: pairs at the end", 1.0 * did.asleep / steps AS "asleep: bodies asleep on average"
 FROM did JOIN did AS dbvt USING (run), plan
 WHERE did.list = 'as shipped' AND dbvt.method = 'btDbvtBroadphase' ORDER BY run, did.number;
 

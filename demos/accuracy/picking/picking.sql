@@ -42,8 +42,8 @@ CREATE TABLE longest AS
 SELECT method, max(length) AS length, hits, missed FROM did WHERE length IS NOT NULL GROUP BY method;
 
 CREATE VIEW shown_times AS
-SELECT method, grazed.ns AS "time: a ray [ns]", grazed.low AS "low: 5 % [ns]",
-       grazed.high AS "high: 95 % [ns]", grazed.ns / bullet_ns AS "ratio: of Bullet's time",
+SELECT method, grazed.ns AS "time: a ray [ns]", grazed.low AS "low: 5th percentile [ns]",
+       grazed.high AS "high: 95th percentile [ns]", grazed.ns / bullet_ns AS "ratio: a ray [times Bullet's]",
        missed_percent AS "missed: hits missed [%]", 1.0 * falsely / rays AS "falsely: false hits a ray",
        wrong_percent AS "wrong_nearest: wrong nearest [% of rays]",
        iif(boxes > 0, 1.0 * cells / rays, NULL) AS "cells: cells or blocks a ray",
@@ -54,8 +54,8 @@ ORDER BY number;
 CREATE VIEW shown_lengths AS
 SELECT length AS "length: length [cells]", method,
        iif(nearest_only OR hits = 0, NULL, percent(missed, hits)) AS "missed: hits missed [%]",
-       iif(nearest_only, NULL, 100 * interval_low(missed, max(hits, 1))) AS low,
-       iif(nearest_only, NULL, 100 * interval_high(missed, max(hits, 1))) AS high,
+       iif(nearest_only, NULL, 100 * interval_low(missed, max(hits, 1))) AS "low: at least [%]",
+       iif(nearest_only, NULL, 100 * interval_high(missed, max(hits, 1))) AS "high: at most, 95 % sure [%]",
        1.0 * falsely / rays AS "falsely: false hits a ray",
        percent(wrong_nearest, rays_that_hit) AS "wrong_nearest: wrong nearest box [% of rays]",
        iif(cells > 0, 1.0 * cells / rays, NULL) AS "cells: cells a ray"
@@ -77,8 +77,8 @@ FROM plan;
     "each": "SELECT contact FROM did WHERE contact IS NOT NULL GROUP BY contact ORDER BY min(rowid)"} */
 SELECT ulps AS "ulps: offset [ulp]", method,
        iif(box_hits > 0, percent(box_missed, box_hits), NULL) AS "missed: hits missed [%]",
-       100 * interval_low(box_missed, box_hits) AS low,
-       100 * interval_high(box_missed, box_hits) AS high,
+       100 * interval_low(box_missed, box_hits) AS "low: at least [%]",
+       100 * interval_high(box_missed, box_hits) AS "high: at most, 95 % sure [%]",
        percent(box_falsely, rays - box_hits) AS "falsely: false hits [%]"
 FROM did JOIN methods USING (method) WHERE contact = :contact AND NOT nearest_only ORDER BY did.rowid;
 
@@ -145,7 +145,7 @@ SELECT task, method, frame_ms, error, result, ours, low_ms FROM (
 ORDER BY number, part;
 
 /* {"conclusions": "a sentence a method"} */
-SELECT method || ': ' || number(ns) || ' ns a ray; '
+SELECT method || ': ' || ms(ns) || ' ns a ray; '
        || iif(nearest_only, '', 'of grazing rays'' hits ' || thousands(grazed.missed) || ' of '
                                 || thousands(grazed.hits) || ' are missed, ')
        || thousands(falsely) || ' false hits, a wrong nearest box on ' || thousands(wrong_nearest)

@@ -27,16 +27,16 @@ ORDER BY trial, methods.number;
 CREATE TABLE bullet AS SELECT crowd, ns AS bullet_ns FROM did WHERE origin = 'bullet' GROUP BY crowd;
 
 CREATE VIEW results AS
-SELECT crowd, method, iif(uses_cells, ratio, NULL) AS "radius_by_cell: radius / cell",
+SELECT crowd, method, iif(uses_cells, ratio, NULL) AS "radius_by_cell: radius [cells]",
        ns AS "ns: time [ns/agent]", ns * decisions / neighbours AS "ns_neighbour: time [ns/neighbour]",
        bullet_ns / ns AS "speed: times as fast as btDbvtBroadphase",
-       recall AS "recall: neighbours found (recall)",
-       precision AS "precision: of those named, neighbours (precision)",
-       iif(estimate, estimate_precision, NULL) AS "theory: precision in theory",
-       wrong_share AS "wrong: wrong decisions",
-       interval_low(wrong, decisions, frames) AS "wrong_low: at least",
-       interval_high(wrong, decisions, frames) AS "wrong_high: at most (95 %)",
-       1.0 * worse / decisions AS "worse: decisions for a colour that is not even equally rare"
+       recall AS "recall: recall, neighbours found [share]",
+       precision AS "precision: precision, neighbours among those named [share]",
+       iif(estimate, estimate_precision, NULL) AS "theory: precision in theory [share]",
+       wrong_share AS "wrong: wrong decisions [share]",
+       interval_low(wrong, decisions, frames) AS "wrong_low: at least [share]",
+       interval_high(wrong, decisions, frames) AS "wrong_high: at most, 95 % sure [share]",
+       1.0 * worse / decisions AS "worse: decisions for a colour that is not equally rare [share]"
 FROM did LEFT JOIN bullet USING (crowd) ORDER BY did.rowid;
 
 CREATE VIEW first_results AS SELECT * FROM results WHERE crowd = (SELECT crowd FROM trials);
@@ -64,19 +64,20 @@ SELECT * FROM results WHERE crowd = :crowd;
 
 /* {"chart": "P3-recall", "title": "How many of the neighbours are found", "settings": "{scene}",
     "x": "radius_by_cell log", "y": "recall", "series": "method"} */
-SELECT * FROM first_results WHERE "radius_by_cell: radius / cell" IS NOT NULL;
+SELECT * FROM first_results WHERE "radius_by_cell: radius [cells]" IS NOT NULL;
 
 /* {"chart": "P3-precision", "title": "How many of those named are neighbours", "settings": "{scene}",
     "x": "radius_by_cell log", "y": "precision", "series": "method", "theory": "theory"} */
-SELECT * FROM first_results WHERE "radius_by_cell: radius / cell" IS NOT NULL;
+SELECT * FROM first_results WHERE "radius_by_cell: radius [cells]" IS NOT NULL;
 
 /* {"table": "the first crowd"} */
 SELECT * FROM first_results;
 
 /* {"table": "what proximity.hpp states"} */
-SELECT ratio AS "radius_by_cell: estimateWithin in space: radius / cell", found,
-       share AS "precision: of these within the radius", theory AS "theory: in theory",
-       stated AS "stated: as proximity.hpp states", missed, too_far AS "too_far: beyond the stated distance"
+SELECT ratio AS "radius_by_cell: estimateWithin in space: radius [cells]", found AS "found: agents found",
+       share AS "precision: within the radius [share]", theory AS "theory: in theory [share]",
+       stated AS "stated: as proximity.hpp states [share]", missed AS "missed: missed neighbours",
+       too_far AS "too_far: agents beyond the stated distance"
 FROM stated;
 
 /* {"checks": "exact ways"} */

@@ -66,8 +66,9 @@ FROM plan;
 
 CREATE VIEW shown_moves AS
 SELECT motion_text AS "motion: fast objects move by", method, moved.ms AS "frame_ms: frame [ms]",
-       low AS "low_ms: 5 % [ms]", high AS "high_ms: 95 % [ms]",
-       moved.ms / bullet.ms AS "ratio: of Bullet's time, united and tested", contacts, missed,
+       low AS "low_ms: 5th percentile [ms]", high AS "high_ms: 95th percentile [ms]",
+       moved.ms / bullet.ms AS "ratio: frame [times Bullet's, united and tested]", contacts,
+       missed AS "missed: missed contacts",
        100 * missed_share AS "missed_share: missed [%]",
        ifnull(100 * interval_low(missed, contacts), 0) AS "missed_low: at least [%]",
        ifnull(100 * interval_high(missed, contacts), 100) AS "missed_high: at most [%]",
@@ -86,8 +87,9 @@ ORDER BY motion_number, number;
     "high": "high", "theory": "theory"} */
 SELECT ratio AS "ratio: step v dt, in units of wall and bullet, T + 2r", method,
        percent(detected, contacts) AS "detected: contacts detected, bodies stopped [%]",
-       100 * interval_low(detected, contacts) AS low, 100 * interval_high(detected, contacts) AS high,
-       100 * min(1.0, 1.0 / ratio) AS "theory: theory for discrete: min(1, (T + 2r) / (v dt))", contacts
+       100 * interval_low(detected, contacts) AS "low: at least [%]",
+       100 * interval_high(detected, contacts) AS "high: at most, 95 % sure [%]",
+       100 * min(1.0, 1.0 / ratio) AS "theory: theory for discrete methods: min(1, (T + 2r) / (v dt)) [%]", contacts
 FROM lines JOIN twins USING (number, method) WHERE number = first ORDER BY number, ratio;
 
 /* {"chart": "{:name}", "title": "Contacts missed, against the time of a frame, at {:motion_text}",
@@ -113,7 +115,8 @@ UNION ALL VALUES
 ('Bullet''s bodies are spheres without gravity; with CCD, their motion threshold and swept sphere radius are their radius. Stopped are those that are not behind the wall at the end.');
 
 /* {"table": "bullets at walls"} */
-SELECT method AS "method: bullets at walls: method", contacts, missed, "false: false pairs" FROM (
+SELECT method AS "method: bullets at walls: method", contacts, missed AS "missed: missed contacts",
+       "false: false pairs" FROM (
     SELECT number, method, sum(contacts) AS contacts, sum(missed) AS missed,
            sum(invented) AS "false: false pairs"
     FROM at_walls GROUP BY number
@@ -124,7 +127,7 @@ ORDER BY number;
 
 /* {"table": "fast movers"} */
 SELECT "motion: fast objects move by", method, "frame_ms: frame [ms]",
-       "ratio: of Bullet's time, united and tested", contacts, "missed_share: missed [%]",
+       "ratio: frame [times Bullet's, united and tested]", contacts, "missed_share: missed [%]",
        "false: false pairs an object", "cells: cells or boxes searched an object",
        "tests: tests an object", "time_error: worst time of contact [frames]"
 FROM shown_moves;

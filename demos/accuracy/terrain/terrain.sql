@@ -43,11 +43,11 @@ CREATE VIEW bullet AS SELECT * FROM timed WHERE method = 'Bullet: sphere swept d
 
 CREATE VIEW shown_times AS
 SELECT timed.name AS "configuration: method, on hills", timed.method AS "method: kind",
-       timed.ns AS "time: a sphere [ns]", timed.low AS "low: 5 % [ns]",
-       timed.high AS "high: 95 % [ns]", timed.ns / bullet.ns AS "ratio: of Bullet's sweep",
-       timed.depth AS "depth: mean depth [share of r]", timed.worst_depth AS "worst_depth: worst depth",
-       timed.height AS "height: mean height above",
-       timed.worst_height AS "worst_height: worst height",
+       timed.ns AS "time: a sphere [ns]", timed.low AS "low: 5th percentile [ns]",
+       timed.high AS "high: 95th percentile [ns]", timed.ns / bullet.ns AS "ratio: a sphere [times Bullet's sweep]",
+       timed.depth AS "depth: mean depth [share of r]", timed.worst_depth AS "worst_depth: worst depth [share of r]",
+       timed.height AS "height: mean height above [share of r]",
+       timed.worst_height AS "worst_height: worst height [share of r]",
        timed.no_ground_percent AS "no_ground: no ground [%]"
 FROM timed LEFT JOIN bullet ORDER BY timed.rowid;
 
@@ -61,10 +61,10 @@ UNION ALL VALUES
 /* {"table": "slopes"} */
 SELECT plane.slope AS "slope: slope [degrees]", plane.method,
        plane.depth AS "depth: on a slope: mean depth [share of r]",
-       plane.theory AS "theory: r (1 - n_y)",
-       terraces.depth AS "terraces: on terraces: mean depth",
-       terraces.worst_depth AS "terraces_worst: worst depth",
-       terraces.height AS "terraces_height: mean height above"
+       plane.theory AS "theory: r (1 - n_y) [share of r]",
+       terraces.depth AS "terraces: on terraces: mean depth [share of r]",
+       terraces.worst_depth AS "terraces_worst: worst depth [share of r]",
+       terraces.height AS "terraces_height: mean height above [share of r]"
 FROM rests AS plane JOIN rests AS terraces USING (slope, method)
 WHERE plane.kind = 'slope' AND terraces.kind = 'terraces' AND slope IN (0, 40, 80)
 ORDER BY plane.rowid;
@@ -75,27 +75,30 @@ SELECT * FROM shown_times;
 /* {"chart": "P9-slope", "title": "How deep spheres are in a slope; dashed: r (1 - n_y)",
     "settings": "{mesh}", "x": "slope", "y": "depth", "series": "method", "theory": "theory"} */
 SELECT slope AS "slope: slope [degrees]", method,
-       depth AS "depth: mean depth in the ground [share of r]", worst_depth AS "worst_depth: worst depth",
+       depth AS "depth: mean depth in the ground [share of r]",
+       worst_depth AS "worst_depth: worst depth [share of r]",
        height AS "height: mean height above it [share of r]",
-       worst_height AS "worst_height: worst height",
-       no_ground_percent AS "no_ground: no ground found [%]", theory AS "theory: r (1 - n_y)"
+       worst_height AS "worst_height: worst height [share of r]",
+       no_ground_percent AS "no_ground: no ground found [%]", theory AS "theory: r (1 - n_y) [share of r]"
 FROM rests WHERE kind = 'slope' ORDER BY rowid;
 
 /* {"chart": "P9-terraces",
     "title": "How deep spheres are in terraces: flat, up, flat and down, over 4 m each",
     "settings": "{mesh}", "x": "slope", "y": "depth", "series": "method"} */
 SELECT slope AS "slope: slope [degrees]", method,
-       depth AS "depth: mean depth in the ground [share of r]", worst_depth AS "worst_depth: worst depth",
+       depth AS "depth: mean depth in the ground [share of r]",
+       worst_depth AS "worst_depth: worst depth [share of r]",
        height AS "height: mean height above it [share of r]",
-       worst_height AS "worst_height: worst height",
-       no_ground_percent AS "no_ground: no ground found [%]", theory AS "theory: r (1 - n_y)"
+       worst_height AS "worst_height: worst height [share of r]",
+       no_ground_percent AS "no_ground: no ground found [%]", theory AS "theory: r (1 - n_y) [share of r]"
 FROM rests WHERE kind = 'terraces' ORDER BY rowid;
 
 /* {"chart": "P9-points", "title": "Points on the ground for which no triangle is found",
     "settings": "{mesh}; hills, vertices moved by up to 0.3 m", "mark": "point", "x": "place names",
     "y": "no_ground", "series": "method", "low": "low", "high": "high"} */
 SELECT place AS "place: points", method, percent(no_ground, points) AS "no_ground: no ground found [%]",
-       100 * interval_low(no_ground, points) AS low, 100 * interval_high(no_ground, points) AS high,
+       100 * interval_low(no_ground, points) AS "low: at least [%]",
+       100 * interval_high(no_ground, points) AS "high: at most, 95 % sure [%]",
        iif(told > 0, percent(wrong, points), NULL) AS "wrong_triangle: wrong triangle [%]"
 FROM points;
 
@@ -146,7 +149,7 @@ FROM points WHERE no_ground + wrong > 0;
 
 /* {"conclusions": "of times, beside the fastest and Bullet's sweep"} */
 WITH takes AS (
-    SELECT *, name || ' takes ' || number(ns) || ' ns a sphere' AS sentence FROM timed)
+    SELECT *, name || ' takes ' || ms(ns) || ' ns a sphere' AS sentence FROM timed)
 SELECT takes.sentence || '; the fastest, ' || fastest.sentence
        || ifnull('; ' || sweep.sentence, '') || '.'
 FROM takes JOIN (SELECT sentence, min(ns) FROM takes) AS fastest

@@ -4,6 +4,7 @@
 // That experiments hold, and that they notice a method that is broken.
 
 #include <demos/accuracy/experiment.hpp>
+#include <tests/demos/units.hpp>
 
 #include <gtest/gtest.h>
 
@@ -38,6 +39,10 @@ inline void expectChartsCanBeDrawn(const Findings& findings) {
         for (const std::vector<Value>& row : chart.data.rows) {
             EXPECT_EQ(row.size(), chart.data.columns.size());
         }
+        expectUnits(chart.data);
+    }
+    for (const DataTable& table : findings.tables) {
+        expectUnits(table);
     }
 }
 
