@@ -13,16 +13,18 @@ namespace hashphase::demos {
 namespace {
 
 constexpr const char* kIntroduction =
-    "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine. Where "
-    "a program may be a little wrong, it can be faster: this page shows what each such choice "
-    "costs in time and what it gets wrong, with Bullet's own way beside it. Errors are counted "
-    "against exact answers that none of the methods had a part in.";
+    "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine. A "
+    "program that may be a little wrong can be faster. This page shows the time and the error of "
+    "each such choice, next to Bullet's own way. Exact answers come from separate code, which "
+    "shares nothing with the methods.";
 constexpr const char* kAdvice =
-    "Find your task and read down to the most that you can afford: each row costs more time than "
-    "the one above it, and gets less wrong. What is both slower and worse than another choice is "
-    "left out here, but not in the charts. So is a method of Bullet or of the paper that gains "
-    "less than can be told: at most 5 % of the time of ours, or less than ours varies from frame "
-    "to frame.";
+    "Find your task, and read down to the longest time that you can afford. Each row takes more "
+    "time than the row above it, and has a smaller error. The table leaves out a choice that is "
+    "both "
+    "slower and worse than another; the charts have all. It also leaves out a method of Bullet or "
+    "of "
+    "the paper that gains less than can be measured: at most 5 % of the time of ours, or less than "
+    "ours varies from frame to frame.";
 
 std::vector<Choice> allChoices(const AccuracyReport& report) {
     std::vector<Choice> choices;
@@ -153,7 +155,7 @@ DataTable adviceTable(std::span<const Choice> choices) {
                                     ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS least
             FROM worth ORDER BY first, milliseconds, error, number)
         WHERE least IS NULL OR error < least)sql");
-    constexpr std::array titles{"for", "if you can afford [ms]", "use", "and you get", "error"};
+    constexpr std::array titles{"task", "time [ms]", "method", "result", "error"};
     for (std::size_t i = 0; i < titles.size(); ++i) {
         table.columns[i].title = titles[i];
     }

@@ -207,9 +207,9 @@ FROM run WHERE limit_hit;
 /* {"sentences": "what is counted", "section": "Are the pairs right?"} */
 SELECT 'The scene: ' || description || '.' FROM run
 UNION ALL
-SELECT 'Sums over all frames. Missing pairs overlap but are not listed, so that bodies fall through each '
-       || 'other. Extra pairs are listed but do not overlap, which costs time further on; those that '
-       || 'overlapped once and were not removed since are stale.'
+SELECT 'The numbers are sums over all frames. A missing pair overlaps but is not listed: the bodies fall through '
+       || 'each other. An extra pair is listed but does not overlap: it costs time in the narrow phase. A stale '
+       || 'pair is an extra pair that overlapped earlier and was not removed.'
 UNION ALL
 SELECT left_out_sentence FROM results WHERE left_out_after IS NOT NULL;
 
@@ -226,15 +226,15 @@ SELECT name AS broadphase, title AS class, ifnull(pairs, 0) AS "pairs: listed pa
 FROM results WHERE left_out_after IS NULL;
 
 /* {"sentences": "the unit", "section": "How long does it take?"} */
-SELECT 'Medians of the timed frames; of setAabb and calculate together also the time that 95 % of the frames '
-       || 'keep to, and the worst frame.';
+SELECT 'The times are medians of the timed frames. For setAabb and calculate together ("both"), and for the '
+       || 'steps of worlds, the table also has the 95th percentile and the worst frame.';
 
 /* {"table": "times", "section": "How long does it take?"} */
 SELECT name AS broadphase, set_aabb AS "set_aabb_ms: setAabb for all [ms]",
        calculate AS "calculate_ms: calculate [ms]", both AS "both_ms: both [ms]",
-       both_high AS "both_p95_ms: both, 95 % [ms]", both_worst AS "both_worst_ms: both, worst frame [ms]",
+       both_high AS "both_p95_ms: both, 95th percentile [ms]", both_worst AS "both_worst_ms: both, worst frame [ms]",
        speed AS "speed: times as fast as dbvt", step AS "step_ms: whole step [ms]",
-       step_high AS "step_p95_ms: step, 95 % [ms]", step_worst AS "step_worst_ms: step, worst frame [ms]",
+       step_high AS "step_p95_ms: step, 95th percentile [ms]", step_worst AS "step_worst_ms: step, worst frame [ms]",
        fill_ms AS "fill_ms: creating all objects [ms]",
        remove_ms AS "remove_ms: removing {thousands(removed)} objects [ms]",
        memory / 1048576.0 AS "memory_mib: memory [MiB]"
@@ -263,7 +263,7 @@ SELECT title AS broadphase, frame, set_aabb_ms + calculate_ms AS "frame_ms: setA
 FROM frames JOIN broadphases USING (name) WHERE measured ORDER BY broadphases.rowid, frame;
 
 /* {"each": "SELECT together FROM texts WHERE together > 1",
-    "chart": "compare-trace", "title": "Time of the frames, {together} together",
+    "chart": "compare-trace", "title": "Time of the frames, in groups of {together}",
     "settings": "{settings} setAabb for all objects, then calculateOverlappingPairs. Each point is the median of {together} frames, from the least to the most of them; --csv has each frame.",
     "mark": "line", "x": "frame", "y": "frame_ms log", "series": "broadphase", "low": "least_ms",
     "high": "most_ms"} */

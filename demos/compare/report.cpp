@@ -15,10 +15,11 @@ constexpr std::string_view kCompareDeclaration =
     ;
 
 constexpr const char* kIntroduction =
-    "A broadphase finds the pairs of bodies whose bounding boxes overlap. This page shows one "
-    "scene under hashphase, a spatial hash for the Bullet physics engine, and under Bullet's own "
-    "broadphases: whether each listed exactly the pairs that overlap, in every frame, and how long "
-    "it took. All got the same frames, one after another in each frame.";
+    "A broadphase finds the pairs of bodies whose bounding boxes overlap. This page compares "
+    "hashphase, a spatial hash for the Bullet physics engine, with Bullet's own broadphases in one "
+    "scene. Did each broadphase list exactly the overlapping pairs, in every frame? How long did "
+    "it "
+    "take? All broadphases ran the same frames, in turn within each frame.";
 
 void print(const std::vector<std::string>& lines, std::ostream& out) {
     for (const std::string& line : lines) {

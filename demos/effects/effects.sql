@@ -50,18 +50,18 @@ INSERT INTO parts VALUES
 ('lost', 'motion', 'whole', 'bodiesMoved', '', ' bodies stand still'),
 ('lost', 'terrain', 'less', 'offGround', '', ' bodies off the ground ('),
 ('lost', 'terrain', 'whole', 'offGround', '', ' with it)'),
-('lost', 'pairs', 'whole', 'present', '', ' pairs that nobody knows'),
+('lost', 'pairs', 'whole', 'present', '', ' unknown pairs'),
 ('lost', 'response', 'less', 'interpenetrating', '', ' pairs inside each other ('),
 ('lost', 'response', 'whole', 'interpenetrating', '', ' with it)'),
 ('lost', 'sweep', 'whole', 'sweepersStopped', '', ' bodies fly through what they hit'),
-('lost', 'sleeping', 'more', 'bodiesMoved', '', ' more bodies move where nobody looks'),
+('lost', 'sleeping', 'more', 'bodiesMoved', '', ' more bodies move unseen'),
 ('lost', 'picking', 'whole', 'picks', '', ' clicks without an answer'),
 ('lost', 'boxSelection', 'whole', 'selections', '', ' rectangles without an answer'),
 ('lost', 'culling', 'whole', 'hidden', '', ' bodies drawn in vain'),
 ('lost', 'culling', 'late', 'framesCulledLate', '; late in ', ' % of frames with it'),
-('lost', 'proximity', 'whole', 'objects', '', ' agents that see nobody'),
+('lost', 'proximity', 'whole', 'objects', '', ' agents that see no other'),
 ('lost', 'proximity', 'late', 'agentsLate', '; ', ' are late with it'),
-('lost', 'zones', 'whole', 'zonesTested', '', ' zones that tell nothing'),
+('lost', 'zones', 'whole', 'zonesTested', '', ' zones that report nothing'),
 ('lost', 'zones', 'late', 'zonesLate', '; ', ' are late with it'),
 ('lost', 'radar', NULL, NULL, 'no radar', ''),
 ('lost', 'radar', 'late', 'radarsLate', '; late in ', ' % of frames with it');
@@ -113,14 +113,14 @@ SELECT effect || ' ' || which || ', ' || ms(ms) || ' ms: '
 FROM (SELECT * FROM differences WHERE ms < 0 ORDER BY price, which);
 
 CREATE TABLE checks AS
-SELECT 'What is not declared does nothing and takes no memory' AS claim, strays IS NULL AS holds,
+SELECT 'An undeclared effect does nothing and takes no memory' AS claim, strays IS NULL AS holds,
        ifnull('not 0:' || strays, thousands(zeros) || ' counters and tables of undeclared effects are 0')
            AS evidence
 FROM (SELECT count(*) AS zeros,
              group_concat(iif(number = 0, NULL, ' ' || name || ' with ' || effects || ';'), '') AS strays
       FROM numbers JOIN variants ON variants.rowid = variant WHERE NOT is_declared)
 UNION ALL
-SELECT 'What is declared finds the same, to the bit, whatever else is declared', differences = 0,
+SELECT 'A declared effect finds the same results, to the last bit, whatever else is declared', differences = 0,
        thousands(differences) || ' of ' || thousands(comparisons) || ' results differ'
 FROM (SELECT ifnull(sum(differs), 0) AS differences, count(effect) AS comparisons FROM results);
 
@@ -156,9 +156,9 @@ UNION ALL SELECT 'The time limit was reached.' FROM run WHERE limit_hit;
 -- --- On the page ----------------------------------------------------------------------------------
 
 /* {"sentences": "what they are", "section": "The price list"} */
-SELECT 'Alone: the effect and what it needs, less what it needs. Within all: the whole scene, less the scene '
-       || 'without the effect and without what needs it. They differ where effects share work: the grid is '
-       || 'filed once for all that ask it.'
+SELECT 'Alone: a scene of the effect and those that it needs, minus a scene of these. Within all: the whole scene, '
+       || 'minus the scene without the effect and without those that need it. The two differ if effects share '
+       || 'work: one update of the grid serves all effects.'
 UNION ALL SELECT sentence FROM below_zero;
 
 /* {"conclusions": "time limit", "section": "The price list"} */
@@ -171,14 +171,14 @@ SELECT claim, holds, evidence FROM checks;
 SELECT 'Bars are medians. Lines reach from the 5th to the 95th percentile of the frames. A bar below zero: a '
        || 'frame takes less time with the effect than without it; the price list says why.';
 
-/* {"chart": "effects-time", "title": "What each effect costs in time",
+/* {"chart": "effects-time", "title": "Time that each effect takes",
     "settings": "{scene}; medians of {frames} frames", "mark": "bar", "x": "effect names", "y": "amount",
     "series": "price", "low": "low", "high": "high", "section": "The prices, drawn"} */
 SELECT effect, which AS price, ms AS "amount: time [ms a frame]", low AS "low: 5th percentile [ms]",
        high AS "high: 95th percentile [ms]"
 FROM differences ORDER BY differences.price, which;
 
-/* {"chart": "effects-bytes", "title": "What each effect takes of memory",
+/* {"chart": "effects-bytes", "title": "Memory that each effect takes",
     "settings": "{scene}; memory of all tables", "mark": "bar", "x": "effect names",
     "y": "amount", "series": "price", "section": "The prices, drawn"} */
 SELECT effect, price, kib AS "amount: memory [KiB]"
@@ -189,7 +189,7 @@ ORDER BY turn, price;
 /* {"table": "prices", "section": "The price list"} */
 SELECT effect, alone_ms AS "alone_ms: alone [ms]", in_all_ms AS "in_all_ms: within all [ms]",
        alone_bytes / 1024.0 AS "kib_alone: alone [KiB]", in_all_bytes / 1024.0 AS "kib_in_all: within all [KiB]",
-       work AS "work: a frame", lost AS "lost: without it"
+       work AS "work: work in a frame", lost AS "lost: without the effect"
 FROM prices;
 
 /* {"settings": "scene", "section": "The price list"} */

@@ -24,10 +24,10 @@ namespace hashphase::demos {
 namespace {
 
 constexpr const char* kIntroduction =
-    "hashphase is a spatial hash for the Bullet physics engine and for games. A scene declares the "
-    "effects that it calls for, and a frame runs just those. This is what each of them costs in "
-    "one scene, and what the scene lacks without it: measured by running the scene with and "
-    "without it, frame by frame in turn.";
+    "hashphase is a spatial hash for the Bullet physics engine and for games. A scene declares its "
+    "effects, and a frame runs only these. This page shows the cost of each effect in one scene, "
+    "and what the scene lacks without it. The scene ran with and without each effect, in turn "
+    "within each frame.";
 
 struct EffectsOptions {
     std::string scene = "paper";

@@ -25,11 +25,11 @@ CREATE TABLE IF NOT EXISTS volume_checks (volume, pairs, is_right);
 CREATE TABLE phases (number, phase, figure, paper_scope, scope);
 INSERT INTO phases VALUES
 (1, 'collision', 13, 'collision between all spheres, response and terrain traversal',
- 'hashing all spheres anew, all overlapping pairs, which of them touch and how they bounce, and the ground below each'),
+ 'hashing all spheres again, finding the overlapping pairs, testing which touch and how they bounce, and finding the ground below each sphere'),
 (2, 'visibility', 14, 'frustum culling and the draw calls of all visible objects',
- 'hashing all spheres anew, and the list of those that a free camera sees; nothing is drawn'),
-(3, 'AI', 15, 'every object counts the colours within a radius and takes the rarest',
- 'hashing all spheres anew, counting the colours within the radius of each, and taking the rarest; hashphase counts in cells that follow the radius, whatever the column');
+ 'hashing all spheres again, and listing the spheres that a free camera sees; nothing is drawn'),
+(3, 'AI', 15, 'counting, for each object, the colours within a radius, and taking the rarest',
+ 'hashing all spheres again, counting the colours within the radius of each sphere, and taking the rarest; the AI cells of hashphase follow the radius, whatever the column');
 
 -- Frames a second on a Pentium 4, 3.2 GHz: un-optimized, then with cells of 5 to 100 m. "60+" is at least
 -- 60, "<1" below 1: what was measured is not known, so these never become numbers. The last one of all is
@@ -237,7 +237,7 @@ FROM (SELECT thousands(max(objects)) || ' on ' || fixed(side, 0) || ' x ' || fix
              || thousands(triangles) || ' triangles' AS text
       FROM runs WHERE part = 'figure' GROUP BY side ORDER BY side)
 UNION ALL VALUES
-('Every phase is timed on its own, and hashing all objects anew counts in each of them, on one thread; drawing counts in none. Triangles are hashed once.'),
+('Every phase is timed on its own, on one thread. Hashing all objects again counts in each phase, drawing in none. Triangles are hashed once.'),
 ('All methods see the same frames: the bounces and colours that they find are compared, and the next frame does not depend on them.'),
 ('Un-optimized compares everything with everything, and looks for a sphere''s triangle until one has it. The paper''s grid is a map of square cells, wiped and filled in every frame, hashed by multiplication and truncation, its errors corrected: all cells that a box touches, each pair once.'),
 ('Visibility by the paper''s grid is that of its free camera: every cell, as high as the domain, against the frustum; all objects of a cell that is wholly inside, and those that touch of one that is cut. What the paper timed is its camera from above, between two corners of the screen, and drawing.')
@@ -248,7 +248,7 @@ FROM plan
 UNION ALL
 SELECT 'Medians of up to ' || thousands(frames) || ' different frames, '
        || iif(is_hurried, 'hashphase in a round of its own before the rivals, because the time is limited',
-              'all methods in each, in an order that is drawn anew')
+              'all methods in each, in a random order')
        || '; of what takes longer fewer, but at least ' || fewest_frames || '. Seed ' || seed || '.'
 FROM plan
 UNION ALL
@@ -276,7 +276,7 @@ FROM verdicts, (SELECT iif(min(holds) = 0 OR count(holds) = count(*), min(holds)
                 FROM claims);
 
 /* {"sentences": "what is compared", "section": "Whether it is right"} */
-VALUES ('What every method found, pairs, bounces and heights, visible objects, colours, is compared with brute force in the same frame.');
+VALUES ('Brute force checks the results of every method in the same frame: pairs, bounces, heights, visible objects and colours.');
 
 /* {"conclusions": "all", "section": "Whether it is right"} */
 SELECT sentence FROM observations
@@ -309,7 +309,7 @@ SELECT thousands(objects) AS objects, who AS "", title,
             WHEN rate >= 20 THEN 'fair' WHEN printed = '<1' OR rate < 20 THEN 'poor' END
 FROM cells WHERE phase = :phase ORDER BY cells.objects, line, place;
 
-/* {"chart": "paper-{:phase}", "title": "Time a frame by number of objects: {:phase}",
+/* {"chart": "paper-{:phase}", "title": "Time of a frame by number of objects: {:phase}",
     "settings": "{medians}, 5th to 95th percentile; one thread", "x": "objects log", "y": "ms log",
     "series": "method", "low": "low", "high": "high", "theory": "limit",
     "section": "Figure {:figure}: {:phase}", "each": "SELECT * FROM phases"} */
@@ -319,7 +319,7 @@ FROM timed WHERE part = 'figure' AND phase = :phase AND ms IS NOT NULL AND (cell
 ORDER BY timed.method = 'hashphase', timed.method = 'paper''s grid', cell IS NULL, cell, objects;
 
 /* {"sentences": "why", "section": "AI by radius"} */
-SELECT 'The paper does not say within which radius its agents look; how many they see, and so what it costs, grows with its square.'
+SELECT 'The paper does not give the radius of its agents. The number of neighbours, and so the cost, grows with the square of the radius.'
 FROM timed WHERE part = 'radius' LIMIT 1;
 
 /* {"chart": "paper-radius", "title": "Time of an AI frame by radius",
@@ -344,7 +344,7 @@ SELECT * FROM radii;
 SELECT * FROM radii;
 
 /* {"sentences": "why", "section": "Cell size: time against memory"} */
-SELECT 'The paper expects small cells to be fast and to take more memory, since objects span more of them, and leaves the trade-off open. hashphase files each object once, so its memory does not follow the cell size; what is crowded is sorted within its cell.'
+SELECT 'The paper expects small cells to be fast and to take more memory, because objects span more of them. It leaves the trade-off open. hashphase stores each object once, so its memory does not depend on the cell size; it sorts the objects of crowded cells.'
 FROM timed WHERE part = 'cell size' LIMIT 1;
 
 /* {"conclusions": "what hashphase chooses", "section": "Cell size: time against memory"} */
@@ -376,7 +376,7 @@ SELECT * FROM cell_sizes;
 SELECT * FROM cell_sizes;
 
 /* {"sentences": "what", "section": "Bounding volumes as a first pass"} */
-SELECT 'Sticks of 4 m, 0.4 m thick, turn in space. The grid files the box of each volume; pairs whose boxes overlap are candidates, those whose volumes do pass, and the exact test says which of them touch. A volume that fits passes fewer in vain, and takes longer to compare.'
+SELECT 'Sticks of 4 m, 0.4 m thick, turn in space. The grid holds the box of each volume. Pairs of overlapping boxes are candidates; pairs of overlapping volumes pass; the exact test finds the pairs that touch. A tight volume passes fewer pairs in vain, and takes longer to compare.'
 FROM volumes LIMIT 1;
 
 CREATE VIEW bounding_volumes AS
@@ -387,7 +387,7 @@ SELECT volume AS "volume: first pass by", avg(candidates) AS "candidates: pairs 
        median(first_ms) + median(exact_ms) AS "ms: together [ms]"
 FROM volumes GROUP BY volume ORDER BY min(rowid);
 
-/* {"chart": "paper-volumes-pairs", "title": "Pairs that the first pass lets through in vain",
+/* {"chart": "paper-volumes-pairs", "title": "Pairs that pass in vain",
     "settings": "{sticks} sticks, 30 m^3 for each; means of {volume_frames} frames", "mark": "bar",
     "x": "volume names", "y": "false", "section": "Bounding volumes as a first pass"} */
 SELECT * FROM bounding_volumes;

@@ -16,9 +16,9 @@ constexpr std::string_view kPaperDeclaration =
 
 constexpr const char* kPaperIntroduction =
     "Hastings, Mesit and Guha, \"Optimization of Large-Scale, Real-Time Simulations by Spatial "
-    "Hashing\", timed three phases of a simulation of spheres that roam a terrain. This page puts "
-    "what they printed beside what their methods do on this machine, and beside hashphase, a "
-    "spatial "
+    "Hashing\", timed three phases of a simulation of spheres that roam a terrain. This page "
+    "compares "
+    "their printed figures with the same methods on this machine, and with hashphase, a spatial "
     "hash that replaces the broadphase of the Bullet physics engine.";
 
 /// The first two columns stand in one.

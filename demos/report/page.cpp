@@ -161,8 +161,8 @@ private:
         const std::string onCharts =
             hasCharts() ? tag("noscript",
                               tag("p class=\"quiet\"",
-                                  "Charts are drawn by JavaScript, which is off. Their numbers are "
-                                  "in the tables below their titles.")) +
+                                  "Charts need JavaScript, which is off. Their numbers are in the "
+                                  "tables below their titles.")) +
                               '\n'
                         : paragraph(std::string(chartScripts_.whyNone) +
                                         " This page has the numbers of all charts as tables.",
@@ -238,8 +238,8 @@ private:
             out_ << paragraph(overload, "verdict unchecked");
         }
         if (!part.provenance.commandLine.empty()) {
-            out_ << tag("p class=\"quiet\"",
-                        "This part alone: " + tag("code", escaped(part.provenance.commandLine)))
+            out_ << tag("p class=\"quiet\"", "To run this part alone: " +
+                                                 tag("code", escaped(part.provenance.commandLine)))
                  << '\n';
         }
         writeSections(part, placeOfPart(index));

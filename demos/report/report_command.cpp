@@ -19,10 +19,11 @@ namespace hashphase::demos {
 namespace {
 
 constexpr const char* kReportIntroduction =
-    "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine: it "
-    "finds the pairs of bodies whose bounding boxes overlap, and answers rays, culling, AI and "
-    "terrain from the same grid. This page is all that the program measures about itself, part by "
-    "part, bad news included. Each part can be had alone, too.";
+    "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine. It "
+    "finds "
+    "the pairs of bodies whose bounding boxes overlap. The same grid answers ray, culling, AI and "
+    "terrain queries. This page shows everything that the program measures, part by part, also "
+    "where it loses. You can run each part alone.";
 
 struct ReportOptions {
     bool isQuick = false;
@@ -121,7 +122,7 @@ private:
     // A part that cannot go on has not shown what it was to show.
     [[nodiscard]] Page pageOfPart(const ReportPart& part, const std::vector<std::string>& options) {
         std::ostream nowhere(nullptr);
-        Page page{part.command.name, "", "It handed in no page.", false, {}, {}};
+        Page page{part.command.name, "", "It made no page.", false, {}, {}};
         Console console{nowhere, console_.err, console_.errIsTerminal,
                         "hashphase " + part.command.name};
         for (const std::string& option : options) {
@@ -143,7 +144,7 @@ private:
             }
         } catch (const std::exception& error) {
             page.holds = false;
-            page.verdict = std::string("It did not come to its end: ") + error.what();
+            page.verdict = std::string("It failed: ") + error.what();
         }
         return page;
     }

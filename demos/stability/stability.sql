@@ -42,8 +42,8 @@ FROM (SELECT cases.rowid AS turn, cases.id, name, outcomes.rowid AS place, broad
 ORDER BY turn, place;
 
 CREATE VIEW texts AS
-SELECT '-n: n answers missing; +n: n too many; nx: cost, by what the case measures it with; > n s: did not '
-       || 'end within n s; -: nothing to ask it for' AS legend;
+SELECT '-n: n answers missing; +n: n answers too many; nx: cost, n times what the case compares it with; > n s: '
+       || 'not done within n s; -: the broadphase has no such query' AS legend;
 
 /* {"verdict": "all"} */
 SELECT text, holds FROM verdict;
@@ -62,7 +62,7 @@ FROM judged, run WHERE is_explained OR holds = 0;
 -- --- On the page ----------------------------------------------------------------------------------
 
 /* {"sentences": "what is in a cell", "section": "What each one does"} */
-SELECT 'A row for each case, a column for each broadphase, and whether hashphase does what is required. ' || legend
+SELECT 'A row for each case, a column for each broadphase. The verdict: whether hashphase is as required. ' || legend
        || '.'
 FROM texts;
 

@@ -111,9 +111,10 @@ TEST(ComparePage, TellsTheWorstFrameAndTheShareOfExtraPairs) {
     const nlohmann::json& both = report["broadphases"][0]["bothMs"];
     EXPECT_GE(both["worst"], both["p95"]);
     const std::string html = readFile(path);
-    EXPECT_TRUE(holds(html,
-                      "both, 95 % [ms]</th><th scope=\"col\" class=\"number\">both, worst frame "
-                      "[ms]</th>"));
+    EXPECT_TRUE(
+        holds(html,
+              "both, 95th percentile [ms]</th><th scope=\"col\" class=\"number\">both, worst frame "
+              "[ms]</th>"));
     EXPECT_TRUE(holds(html, "extra pairs [% of the true pairs]</th>"));
     EXPECT_TRUE(holds(html, "<td class=\"number\">12</td><td class=\"number\">200</td>"))
         << "12 extra, of 6 true pairs";

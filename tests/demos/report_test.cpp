@@ -178,8 +178,7 @@ TEST(JoinedReport, GoesOnAfterAPartThatThrows) {
     parts[0].command.run = [](Console&) -> int { throw std::runtime_error("no more <paper>"); };
     const ReportSeen seen = runReport(parts, {});
     EXPECT_EQ(seen.exitCode, kExitCheckFailed);
-    EXPECT_NE(seen.html.find("It did not come to its end: no more &lt;paper&gt;"),
-              std::string::npos);
+    EXPECT_NE(seen.html.find("It failed: no more &lt;paper&gt;"), std::string::npos);
     EXPECT_NE(seen.html.find("<h2>Page of beta</h2>"), std::string::npos);
 }
 

@@ -40,10 +40,10 @@ CREATE TABLE bullet AS SELECT * FROM timed WHERE method = 'btDbvt::collideKDOP';
 /* {"settings": "scene, truth, times"} */
 SELECT scene || '.' FROM texts
 UNION ALL VALUES
-('Visible is what shares a point with the frustum: boxes clipped by its planes in long double.'),
-('Objects stand still, so that filing them is not in the times; Bullet''s trees are optimised.'),
-('Objects that touch the view''s sides hang in the air above the ground, where footprints at its height do not look for them.'),
-('A flight is 8 looks of a camera at 6 m/s that turns by 12 degrees a second, 60 looks a second; times are those of a flight by 8.');
+('An object is visible if its box shares a point with the frustum. The truth clips boxes by the planes of the frustum in long double.'),
+('Objects stand still, so the times exclude updates; Bullet''s trees are optimised.'),
+('Objects that touch the sides of the view are above the ground, where footprints at ground height do not look.'),
+('A flight is 8 looks of a camera at 6 m/s that turns by 12 degrees a second, 60 looks a second. The time of a look is an eighth of the time of a flight.');
 
 /* {"chart": "P4-lost", "title": "Visible objects that are not drawn: none may be lost",
     "settings": "{scene}", "mark": "point", "x": "setting names", "y": "lost", "series": "method",
@@ -55,7 +55,7 @@ SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
        cells AS "cells: cells a frame", boxes AS "boxes: boxes tested a frame"
 FROM did WHERE scene = 'ground';
 
-/* {"chart": "P4-overdraw", "title": "Objects that are drawn though nothing of them is visible",
+/* {"chart": "P4-overdraw", "title": "Invisible objects that are drawn",
     "settings": "{scene}", "mark": "point", "x": "setting names", "y": "in_vain", "series": "method"} */
 SELECT setting, method, lost_percent AS "lost: visible objects lost [%]",
        100 * interval_low(lost, max(visible, 1)) AS "low: at least [%]",
@@ -72,7 +72,7 @@ SELECT method, label AS "cell: cells", us AS "time: a look [us]",
 FROM timed;
 
 /* {"chart": "P4-overdraw-time",
-    "title": "Objects drawn in vain against the time of a look, by methods that lose none",
+    "title": "Objects drawn in vain against the time of a look: methods that lose none",
     "settings": "{scene}; medians of at least 60 flights of 8 looks", "mark": "point", "x": "time log",
     "y": "error log0", "series": "method", "label": "cell", "front": true} */
 SELECT method, label AS "cell: cells", us AS "time: a look [us]",

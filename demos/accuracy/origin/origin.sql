@@ -43,14 +43,14 @@ SELECT rowid AS point, thousands(offset) || ' m' AS distance
 FROM points ORDER BY abs(offset - 1e7), rowid LIMIT 1;
 
 CREATE VIEW shown AS
-SELECT offset AS "offset_m: distance from the origin [m]", method, pairs AS "pairs: pairs that there are",
+SELECT offset AS "offset_m: distance from the origin [m]", method, pairs AS "pairs: true pairs",
        missed_pairs AS "missed: missed pairs", missed_percent AS "missed_percent: missed pairs [%]",
        ifnull(100 * interval_low(missed_pairs, pairs), 0) AS "missed_low: at least [%]",
        ifnull(100 * interval_high(missed_pairs, pairs), 100) AS "missed_high: at most [%]",
-       extra_percent AS "extra_percent: false pairs [% of those that there are]",
-       hits AS "hits: hits of rays that there are", missed_hits AS "missed_hits: missed hits",
+       extra_percent AS "extra_percent: false pairs [% of the true pairs]",
+       hits AS "hits: true hits of rays", missed_hits AS "missed_hits: missed hits",
        missed_hits_percent AS "missed_hits_percent: missed hits [%]",
-       false_hits_percent AS "false_hits_percent: false hits [% of those that there are]",
+       false_hits_percent AS "false_hits_percent: false hits [% of the true hits]",
        frame_ms AS "frame_ms: frame [ms]",
        100 * (times - 1) AS "overhead_percent: longer than float at the origin [%]"
 FROM did ORDER BY point, number;
@@ -65,9 +65,9 @@ FROM rested ORDER BY point, number;
 /* {"settings": "scene, truth, methods, frames"} */
 SELECT scene || '.' FROM texts
 UNION ALL VALUES
-('Truth: integer arithmetic. The coordinates given are exact in double precision at every distance; the same scene in steps of 128 m has coordinates that are exact in single precision as well.'),
-('float: bounds rounded to the nearest number. float positions: the centre is rounded, and the bounds computed from it, as Bullet does in single precision. Integer cell: numbers count from the corner of a cell of 1,024 m, which is subtracted in double precision.'),
-('A frame: convert and set all boxes, bring the pairs up to date. The ground truth of rays is the segment before rounding.');
+('Truth: integer arithmetic. The input coordinates are exact in double precision at every distance. The same scene in steps of 128 m has coordinates that are exact in single precision as well.'),
+('float: bounds are rounded to the nearest number. float positions: the centre is rounded, and the bounds are computed from it, as Bullet does in single precision. Integer cell: coordinates count from the corner of a cell of 1,024 m; the subtraction is in double precision.'),
+('A frame: convert and set all boxes, and update the pairs. The truth about a ray is its segment before rounding.');
 
 /* {"table": "pairs and rays"} */
 SELECT * FROM shown
@@ -77,24 +77,24 @@ WHERE "offset_m: distance from the origin [m]" IN (SELECT offset FROM points WHE
 SELECT * FROM shown_rests
 WHERE "offset_m: distance from the origin [m]" IN (SELECT offset FROM points WHERE in_tables);
 
-/* {"chart": "P6-extra-pairs", "title": "How many false pairs there are far from the origin",
+/* {"chart": "P6-extra-pairs", "title": "False pairs far from the origin",
     "settings": "{scene}", "x": "offset_m log0", "y": "extra_percent log0", "series": "method"} */
 SELECT * FROM shown;
 
-/* {"chart": "P6-missed-pairs", "title": "How many pairs are missed far from the origin",
+/* {"chart": "P6-missed-pairs", "title": "Missed pairs far from the origin",
     "settings": "{scene}", "x": "offset_m log0", "y": "missed_percent", "series": "method",
     "low": "missed_low", "high": "missed_high"} */
 SELECT * FROM shown;
 
-/* {"chart": "P6-missed-hits", "title": "How many hits of rays are missed far from the origin",
+/* {"chart": "P6-missed-hits", "title": "Missed hits of rays far from the origin",
     "settings": "{scene}", "x": "offset_m log0", "y": "missed_hits_percent", "series": "method"} */
 SELECT * FROM shown;
 
-/* {"chart": "P6-overhead", "title": "What each way costs, against single precision at the origin",
+/* {"chart": "P6-overhead", "title": "Cost of each way, against single precision at the origin",
     "settings": "{scene}", "x": "offset_m log0", "y": "overhead_percent", "series": "method"} */
 SELECT * FROM shown;
 
-/* {"chart": "P6-position-error", "title": "How far from their place balls come to rest",
+/* {"chart": "P6-position-error", "title": "Distance of balls at rest from their place",
     "settings": "16 balls dropped onto a floor, 300 steps of 1/60 s, Bullet in single precision",
     "x": "offset_m log0", "y": "position_error_m log0", "series": "method"} */
 SELECT * FROM shown_rests;

@@ -23,9 +23,9 @@ FROM did WHERE origin <> 'ours' GROUP BY population ORDER BY trial;
 /* {"settings": "scene, truth, words"} */
 SELECT scene FROM texts
 UNION ALL VALUES
-('True pairs: a sweep along one axis, which brute force judges up to 20,000 objects.'),
-('Levels: hashphase with finest cells of that size and coarser ones of 4, 16 ... times, of which a box lies on the finest with cells no smaller than it; where most boxes are a little smaller than the cells of one level, all of them share it. Automatic: sizes chosen from the population. One grid: the paper''s, with one size for all.'),
-('Not measured: the paper''s grids where an object would lie in more than 64 cells on average, and their times where a frame compares more than 300 boxes an object; they and btDbvtBroadphase above 20,000 objects.');
+('Truth: a sweep along one axis finds the true pairs. Brute force checks the sweep up to 20,000 objects.'),
+('Levels: hashphase with finest cells of this size, and coarser levels with cells 4, 16 ... times as large. A box is on the finest level whose cells are no smaller than the box. If most boxes are a little smaller than the cells of one level, all share this level. Automatic: hashphase chooses the sizes. One grid: the paper''s, with one cell size for all boxes.'),
+('Not measured: the paper''s grids if an object would be in more than 64 cells on average; their times if a frame compares more than 300 boxes per object; the paper''s grids and btDbvtBroadphase above 20,000 objects.');
 
 -- Where no box is larger than a cell, each spans at most two cells an axis: its corners are all.
 /* {"checks": "the paper's grids"} */
@@ -33,13 +33,13 @@ SELECT 'The paper''s corner cells miss nothing where no box is larger than a cel
        thousands(total(missed)) || ' of ' || thousands(total(true_pairs))
 FROM did WHERE NOT complete AND factor >= largest_edge;
 
-/* {"chart": "P2-time", "title": "Time an object and frame, by the size of the finest cells",
+/* {"chart": "P2-time", "title": "Time of a frame per object, by the size of the finest cells",
     "settings": "{scene}", "mark": "cell", "x": "cell names", "y": "population names", "shade": "ns log"} */
 SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell [mean edges]",
        name AS "population: population, objects", ns AS "ns: time [ns/object]"
 FROM did WHERE origin = 'ours';
 
-/* {"chart": "P2-memory", "title": "Memory an object, by the size of the finest cells",
+/* {"chart": "P2-memory", "title": "Memory per object, by the size of the finest cells",
     "settings": "{scene}", "mark": "cell", "x": "cell names", "y": "population names",
     "shade": "bytes log"} */
 SELECT iif(factor IS NULL, 'automatic', number(factor)) AS "cell: cell [mean edges]",
@@ -54,7 +54,7 @@ SELECT name AS population, automatic_ns AS "automatic_ns: automatic [ns/object]"
 FROM contests WHERE regret IS NOT NULL;
 
 /* {"chart": "P2-regret",
-    "title": "By how much the automatic cells are slower than the best fixed ones (below zero: faster)",
+    "title": "How much slower automatic cells are than the best fixed cells (below zero: faster)",
     "settings": "{scene}", "mark": "bar", "x": "population names", "y": "regret_percent"} */
 SELECT * FROM regrets;
 

@@ -192,7 +192,7 @@ Findings measurePolicies(const UpdatePlan& plan, std::span<const PairMethod> pol
 Experiment updateExperiment() {
     return {"P10",
             "Update policy",
-            "What does it save not to tell the broadphase of every move, and what goes wrong?",
+            "What does it save to report only some moves to the broadphase, and what goes wrong?",
             4,
             40,
             [](const Effort& effort, const TellProgress& tell) {

@@ -26,8 +26,8 @@ CREATE VIEW alike AS SELECT trial, share FROM trials WHERE step = (SELECT step F
 /* {"settings": "scene, truth, words"} */
 SELECT scene FROM texts
 UNION ALL VALUES
-('True pairs: a sweep along one axis in every judged frame, by boxes as they are then; brute force judges the sweep.'),
-('Moved only: setAabb for all, of which unchanged ones cost a comparison, and what has not moved for eight frames rests in a table that is left alone.');
+('Truth: in every judged frame, a sweep along one axis finds the true pairs of the boxes of this frame. Brute force checks the sweep.'),
+('Moved only: setAabb for all boxes. An unchanged box costs a comparison. A box that has not moved for eight frames rests in a table that no update visits.');
 
 -- Where nothing moves, there is nothing to miss, whatever one is not told.
 /* {"checks": "stillness"} */
@@ -40,12 +40,12 @@ FROM did WHERE share = 0;
     "settings": "{scene}", "x": "moving_percent", "y": "ns log", "series": "policy"} */
 SELECT * FROM shown WHERE rowid IN (SELECT rowid FROM did WHERE trial IN (SELECT trial FROM alike));
 
-/* {"chart": "P10-missed", "title": "Missed pairs against time: wrong answers", "settings": "{scene}",
+/* {"chart": "P10-missed", "title": "Missed pairs against time", "settings": "{scene}",
     "mark": "point", "x": "ns log", "y": "missed_share log0", "series": "policy", "low": "missed_low",
     "high": "missed_high", "label": "motion", "front": true} */
 SELECT * FROM shown;
 
-/* {"chart": "P10-false", "title": "False pairs against time: work for those who come after",
+/* {"chart": "P10-false", "title": "False pairs against time: work for the narrow phase",
     "settings": "{scene}", "mark": "point", "x": "ns log", "y": "false_share log0", "series": "policy",
     "label": "motion", "front": true} */
 SELECT * FROM shown;

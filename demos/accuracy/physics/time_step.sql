@@ -41,9 +41,9 @@ GROUP BY point;
 /* {"settings": "scene, truth, words"} */
 SELECT scene || '.' FROM texts
 UNION ALL VALUES
-('After SimBenchmark (Kang, Hwangbo and others). Truth: the laws of motion in double precision; that nothing overlaps. Errors of Bullet''s steps against continuous motion are meant to be seen.'),
+('After SimBenchmark (Kang, Hwangbo and others). Truth: the laws of motion in double precision, and no overlap. The errors include the error of Bullet''s steps against continuous motion.'),
 ('Canonical order: pairs sorted by the numbers of the bodies, contacts by age and with m_deterministicOverlappingPairs. No body sleeps. Restitution holds at any speed.'),
-('Contacts that keep energy: setContactProcessingThreshold(0), so that only what touches is in contact, and m_splitImpulsePenetrationThreshold above 0, so that overlap is undone without adding speed.');
+('Contacts that keep energy: setContactProcessingThreshold(0), so that only touching bodies are in contact, and m_splitImpulsePenetrationThreshold above 0, so that overlap is undone without adding speed.');
 
 /* {"table": "all"} */
 SELECT task_name AS task, name AS "error: error, root mean square",
@@ -85,7 +85,7 @@ SELECT way, setting, ms AS "second_ms: time of a simulated second [ms]", error A
 FROM did WHERE task = :task AND measure = 0 AND contestant = 0 ORDER BY point;
 
 /* {"chart": "P7-fall-theory",
-    "title": "Free fall goes wrong as theory says: by half a step at the speed gained", "settings": "{scene}",
+    "title": "Error of free fall: half a step at the speed gained, as in theory", "settings": "{scene}",
     "x": "step_ms log", "y": "error log", "series": "method", "theory": "theory",
     "each": "SELECT * FROM shown", "when": "{:kind = 3}"} */
 SELECT method, 1000.0 / per_second AS "step_ms: step [ms]", error AS "error: {:axis}",

@@ -36,9 +36,9 @@ FROM (SELECT * FROM sameness WHERE method <> 'btSimpleBroadphase' ORDER BY run, 
 SELECT scene || '.' FROM texts
 UNION ALL VALUES
 ('Truth: btSimpleBroadphase, which compares all boxes with all. Place, velocities and activation of all bodies are compared after every step, bit by bit.'),
-('Canonical order: pairs sorted by the numbers of the bodies, contact manifolds by age, so that nothing but the set of pairs can matter.'),
-('m_deterministicOverlappingPairs sorts contacts by unique ids, which btSimpleBroadphase and bt32BitAxisSweep3 give away again when bodies come back (churn), and the others do not.'),
-('lattice: spheres that fall into an open box; bouncing: balls that bounce for ever; compounds: dumbbells and crosses that fall into a heap; churn: a pile out of which bodies are taken and dropped again; the others are those of `hashphase compare`.');
+('Canonical order: pairs sorted by the numbers of the bodies, contact manifolds by age, so that only the set of pairs can matter.'),
+('m_deterministicOverlappingPairs sorts contacts by unique ids, which btSimpleBroadphase and bt32BitAxisSweep3 reuse when bodies come back (churn), and the other broadphases do not.'),
+('lattice: spheres that fall into an open box; bouncing: balls that bounce endlessly; compounds: dumbbells and crosses that fall into a heap; churn: a pile out of which bodies are taken and dropped again; `hashphase compare` has the other scenes.');
 
 CREATE VIEW words AS
 SELECT *, iif(differs IS NULL, 'yes', 'until step ' || differs) AS word FROM did;
@@ -74,7 +74,7 @@ SELECT method AS "method: broadphase", list AS "order: order of lists",
        same AS "same: scenes with the same motion"
 FROM sameness;
 
-/* {"chart": "P8-step-time", "title": "What a whole step costs under each broadphase",
+/* {"chart": "P8-step-time", "title": "Time of a whole step under each broadphase",
     "settings": "{scene}; lists as shipped; bars from 5 % to 95 % of the steps", "mark": "point",
     "x": "scene names", "y": "step_ms log", "series": "method", "low": "low_ms", "high": "high_ms"} */
 SELECT * FROM step_times;

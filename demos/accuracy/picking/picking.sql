@@ -64,15 +64,15 @@ FROM did JOIN methods USING (method) WHERE length IS NOT NULL ORDER BY did.rowid
 /* {"settings": "scene, truth, methods"} */
 SELECT slab || '.' FROM texts
 UNION ALL VALUES
-('All coordinates are multiples of 2^-13 m, and the truth, about all boxes, is found in 128-bit integers without rounding: touching is a hit.'),
-('Ways through cells test the boxes in them alike, by RayRegion::key(); they differ by the cells that they visit. The paper''s plane lies in the middle of the boxes'' heights.')
+('All coordinates are multiples of 2^-13 m. 128-bit integers find the truth about all boxes without rounding. Touching is a hit.'),
+('All walks through cells test boxes in the same way, by RayRegion::key(). They differ in the cells that they visit. The paper''s plane is in the middle of the heights of the boxes.')
 UNION ALL
 SELECT 'Methods that take time for each cell are given rays of up to ' || thousands(longest_cell_walk)
        || ' cells.'
 FROM plan;
 
 /* {"chart": "P5-offset-{:contact}",
-    "title": "Boxes that are hit, and missed, when a ray passes the {:contact} so many ulps outside of it (negative: inside)",
+    "title": "Hits that are missed when a ray passes the {:contact} of a box, by its distance outside (negative: inside)",
     "settings": "{slab}", "x": "ulps", "y": "missed", "series": "method", "low": "low", "high": "high",
     "each": "SELECT contact FROM did WHERE contact IS NOT NULL GROUP BY contact ORDER BY min(rowid)"} */
 SELECT ulps AS "ulps: offset [ulp]", method,
@@ -82,13 +82,13 @@ SELECT ulps AS "ulps: offset [ulp]", method,
        percent(box_falsely, rays - box_hits) AS "falsely: false hits [%]"
 FROM did JOIN methods USING (method) WHERE contact = :contact AND NOT nearest_only ORDER BY did.rowid;
 
-/* {"chart": "P5-length", "title": "Boxes missed by rays of that length",
+/* {"chart": "P5-length", "title": "Boxes missed, by the length of rays",
     "settings": "rays from near the origin, boxes of 1 m or, where that is more, of an ulp of their coordinates, strung along them, about half of them hit; cells of 1 m, single precision",
     "x": "length log", "y": "missed log0", "series": "method", "low": "low", "high": "high"} */
 SELECT * FROM shown_lengths;
 
 /* {"chart": "P5-length-cells",
-    "title": "Cells, or blocks of boxes, that a ray of that length visits",
+    "title": "Cells, or blocks of boxes, that a ray visits, by its length",
     "settings": "rays from near the origin, boxes of 1 m or, where that is more, of an ulp of their coordinates, strung along them, about half of them hit; cells of 1 m, single precision",
     "x": "length log", "y": "cells log", "series": "method"} */
 SELECT * FROM shown_lengths;

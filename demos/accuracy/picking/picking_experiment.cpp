@@ -182,7 +182,7 @@ Findings findPicking(const PickingPlan& plan, std::uint64_t seed,
 Experiment pickingExperiment() {
     return {"P5",
             "Picking rays",
-            "How many boxes does a ray miss that grazes them, or that is long?",
+            "How many boxes do grazing rays and long rays miss?",
             3,
             60,
             [](const Effort& effort, const TellProgress& tell) {

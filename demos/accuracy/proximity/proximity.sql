@@ -31,7 +31,7 @@ SELECT crowd, method, iif(uses_cells, ratio, NULL) AS "radius_by_cell: radius [c
        ns AS "ns: time [ns/agent]", ns * decisions / neighbours AS "ns_neighbour: time [ns/neighbour]",
        bullet_ns / ns AS "speed: times as fast as btDbvtBroadphase",
        recall AS "recall: recall, neighbours found [share]",
-       precision AS "precision: precision, neighbours among those named [share]",
+       precision AS "precision: precision, neighbours among agents found [share]",
        iif(estimate, estimate_precision, NULL) AS "theory: precision in theory [share]",
        wrong_share AS "wrong: wrong decisions [share]",
        interval_low(wrong, decisions, frames) AS "wrong_low: at least [share]",
@@ -52,9 +52,9 @@ GROUP BY estimates.ratio;
 /* {"settings": "scene, truth, words"} */
 SELECT scene FROM texts
 UNION ALL VALUES
-('Truth: the distance to every other agent in double precision, for agents that have all the cells around them within the square. Coordinates are multiples of 1/256 m, so that single precision decides without rounding.'),
-('A decision is wrong when another colour is taken than the rarest, of equally rare ones the lowest.'),
-('Cells: everybody whose box touches a cell that the ball''s box touches; with boxes: whose box touches the ball''s box. As printed: the paper''s half-open loop over cells, which counts nobody where the radius is smaller than a cell, and an agent on a border twice.');
+('Truth: the distance to every other agent in double precision, for agents with all neighbouring cells within the square. Coordinates are multiples of 1/256 m, so single precision decides without rounding.'),
+('A right decision takes the rarest colour; of equally rare colours, the lowest.'),
+('Cells: all agents whose box touches a cell that the box of the ball touches. Cells and boxes: all agents whose box touches the box of the ball. As printed: the half-open loop over cells of the paper, which counts no agent if the radius is smaller than a cell, and counts an agent on a border twice.');
 
 /* {"chart": "P3-decisions-{:number}", "title": "Wrong decisions against time: {:crowd}",
     "settings": "{scene}", "mark": "point", "x": "ns log", "y": "wrong log0", "series": "method",
@@ -62,11 +62,11 @@ UNION ALL VALUES
     "each": "SELECT crowd, row_number() OVER (ORDER BY min(trial)) AS number FROM trials GROUP BY crowd"} */
 SELECT * FROM results WHERE crowd = :crowd;
 
-/* {"chart": "P3-recall", "title": "How many of the neighbours are found", "settings": "{scene}",
+/* {"chart": "P3-recall", "title": "Recall: neighbours that are found", "settings": "{scene}",
     "x": "radius_by_cell log", "y": "recall", "series": "method"} */
 SELECT * FROM first_results WHERE "radius_by_cell: radius [cells]" IS NOT NULL;
 
-/* {"chart": "P3-precision", "title": "How many of those named are neighbours", "settings": "{scene}",
+/* {"chart": "P3-precision", "title": "Precision: neighbours among the agents that are found", "settings": "{scene}",
     "x": "radius_by_cell log", "y": "precision", "series": "method", "theory": "theory"} */
 SELECT * FROM first_results WHERE "radius_by_cell: radius [cells]" IS NOT NULL;
 
@@ -90,7 +90,7 @@ SELECT 'Exact ways find every neighbour and no other, and take no wrong decision
 FROM did WHERE exact;
 
 /* {"checks": "complete ways"} */
-SELECT 'Cells, with boxes and without, miss nobody who is within the radius', total(neighbours - found) = 0,
+SELECT 'Cells, with boxes and without, miss no agent within the radius', total(neighbours - found) = 0,
        thousands(total(neighbours - found)) || ' of ' || thousands(total(neighbours))
 FROM did WHERE complete;
 
@@ -100,7 +100,7 @@ SELECT 'estimateWithin in space: 1, 2, 3 and 4 in 10 are really within 1, 2, 4 a
        group_concat(fixed(share, 3) || ' (theory ' || fixed(theory, 3) || ')', ', ')
 FROM stated
 UNION ALL
-SELECT 'estimateWithin misses nobody, and nobody is farther than sqrt(3) (radius + cell)',
+SELECT 'estimateWithin misses no agent, and finds none farther than sqrt(3) (radius + cell)',
        sum(missed) = 0 AND sum(too_far) = 0,
        thousands(total(missed)) || ' missed, ' || thousands(total(too_far)) || ' too far of '
        || thousands(total(found)) || ' found'

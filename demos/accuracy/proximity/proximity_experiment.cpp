@@ -272,15 +272,15 @@ Findings measureProximity(const ProximityPlan& plan, std::span<const NeighbourMe
 }
 
 Experiment proximityExperiment() {
-    return {
-        "P3",
-        "Proximity for AI",
-        "What does an agent get wrong that asks only roughly who is near, and what does it save?",
-        5,
-        100,
-        [](const Effort& effort, const TellProgress& tell) {
-            return measureProximity(proximityPlan(effort), neighbourMethods(), effort.seed, tell);
-        }};
+    return {"P3",
+            "Proximity for AI",
+            "How many decisions do rough neighbours get wrong, and how much time do they save?",
+            5,
+            100,
+            [](const Effort& effort, const TellProgress& tell) {
+                return measureProximity(proximityPlan(effort), neighbourMethods(), effort.seed,
+                                        tell);
+            }};
 }
 
 }  // namespace hashphase::demos

@@ -82,7 +82,7 @@ FROM moved LEFT JOIN (SELECT motion_number AS at, min(number), ms FROM moved
 ORDER BY motion_number, number;
 
 /* {"chart": "P1-tunnelling",
-    "title": "Contacts of a bullet with a wall that are detected, by how far the bullet moves in a frame",
+    "title": "Contacts of bullets with walls that are detected, by the way of the bullet in a frame",
     "settings": "{walls}", "x": "ratio log", "y": "detected", "series": "method", "low": "low",
     "high": "high", "theory": "theory"} */
 SELECT ratio AS "ratio: step v dt, in units of wall and bullet, T + 2r", method,
@@ -92,14 +92,14 @@ SELECT ratio AS "ratio: step v dt, in units of wall and bullet, T + 2r", method,
        100 * min(1.0, 1.0 / ratio) AS "theory: theory for discrete methods: min(1, (T + 2r) / (v dt)) [%]", contacts
 FROM lines JOIN twins USING (number, method) WHERE number = first ORDER BY number, ratio;
 
-/* {"chart": "{:name}", "title": "Contacts missed, against the time of a frame, at {:motion_text}",
+/* {"chart": "{:name}", "title": "Contacts missed against the time of a frame, at {:motion_text}",
     "settings": "{landscape}", "mark": "point", "x": "frame_ms log", "y": "missed_share log0",
     "series": "method", "low": "missed_low", "high": "missed_high", "front": true,
     "each": "SELECT DISTINCT motion_text, iif(motion_number = (SELECT max(rowid) FROM motions), 'P1-pareto', 'P1-pareto-' || number(motion) || '-cells') AS name FROM moved"} */
 SELECT * FROM shown_moves WHERE "motion: fast objects move by" = :motion_text;
 
 /* {"chart": "P1-false",
-    "title": "Pairs that are listed for each fast object though they never touch, and left to others to test",
+    "title": "False pairs of each fast object, which the narrow phase must test",
     "settings": "{landscape}", "mark": "point", "x": "method names", "y": "false log0",
     "series": "motion"} */
 SELECT * FROM shown_moves;
@@ -109,10 +109,10 @@ SELECT 'P1-tunnelling: ' || walls || '.' FROM texts
 UNION ALL
 SELECT 'P1-false: ' || landscape || '.' FROM texts
 UNION ALL VALUES
-('Contacts that last from the frame before are left out, for all. Discrete methods know the boxes at the end of the frame.'),
-('What shares a cell with the paper''s methods counts when the boxes around the ways overlap. Its grid files what stands once, is told its cell size, and keeps no pairs from frame to frame, as the others do.'),
-('False pairs of btDbvtBroadphase, united, are also those that it keeps from earlier frames.'),
-('Bullet''s bodies are spheres without gravity; with CCD, their motion threshold and swept sphere radius are their radius. Stopped are those that are not behind the wall at the end.');
+('Contacts that last from the frame before do not count, for any method. Discrete methods know the boxes at the end of the frame.'),
+('In the paper''s methods, objects that share a cell count if the boxes around their ways overlap. The grid stores resting objects once, is given its cell size, and keeps no pairs from frame to frame; the other methods keep pairs.'),
+('The false pairs of btDbvtBroadphase, united, include pairs that it keeps from earlier frames.'),
+('Bullet''s bodies are spheres without gravity; with CCD, their motion threshold and swept sphere radius are their radius. A body is stopped if it is not behind the wall at the end.');
 
 /* {"table": "bullets at walls"} */
 SELECT method AS "method: bullets at walls: method", contacts, missed AS "missed: missed contacts",

@@ -55,8 +55,8 @@ FROM timed LEFT JOIN bullet ORDER BY timed.rowid;
 SELECT mesh || '.' FROM texts
 UNION ALL VALUES
 ('Slopes are one plane; terraces are flat, go up, are flat and go down, over 4 m each; hills are random, up to 56 m high.'),
-('How deep a sphere is in the ground, or how far above, the nearest points of all triangles say, in long double. Spheres that are judged ask from 2 m above where they rest, those that are timed from 2 m above the highest point.'),
-('Points that ask for their triangle lie anywhere, on shared edges (as far as single precision has them there), and on shared corners.');
+('Truth: the nearest points of all triangles, in long double, show how deep a sphere is in the ground, or how far above. Judged spheres ask from 2 m above their place of rest, timed spheres from 2 m above the highest point.'),
+('Points that ask for their triangle are anywhere, on shared edges (to single precision), and on shared corners.');
 
 /* {"table": "slopes"} */
 SELECT plane.slope AS "slope: slope [degrees]", plane.method,
@@ -72,7 +72,7 @@ ORDER BY plane.rowid;
 /* {"table": "times"} */
 SELECT * FROM shown_times;
 
-/* {"chart": "P9-slope", "title": "How deep spheres are in a slope; dashed: r (1 - n_y)",
+/* {"chart": "P9-slope", "title": "Depth of spheres in a slope; dashed: r (1 - n_y)",
     "settings": "{mesh}", "x": "slope", "y": "depth", "series": "method", "theory": "theory"} */
 SELECT slope AS "slope: slope [degrees]", method,
        depth AS "depth: mean depth in the ground [share of r]",
@@ -83,7 +83,7 @@ SELECT slope AS "slope: slope [degrees]", method,
 FROM rests WHERE kind = 'slope' ORDER BY rowid;
 
 /* {"chart": "P9-terraces",
-    "title": "How deep spheres are in terraces: flat, up, flat and down, over 4 m each",
+    "title": "Depth of spheres in terraces: flat, up, flat and down, over 4 m each",
     "settings": "{mesh}", "x": "slope", "y": "depth", "series": "method"} */
 SELECT slope AS "slope: slope [degrees]", method,
        depth AS "depth: mean depth in the ground [share of r]",
@@ -93,7 +93,7 @@ SELECT slope AS "slope: slope [degrees]", method,
        no_ground_percent AS "no_ground: no ground found [%]", theory AS "theory: r (1 - n_y) [share of r]"
 FROM rests WHERE kind = 'terraces' ORDER BY rowid;
 
-/* {"chart": "P9-points", "title": "Points on the ground for which no triangle is found",
+/* {"chart": "P9-points", "title": "Points on the ground without a triangle found",
     "settings": "{mesh}; hills, vertices moved by up to 0.3 m", "mark": "point", "x": "place names",
     "y": "no_ground", "series": "method", "low": "low", "high": "high"} */
 SELECT place AS "place: points", method, percent(no_ground, points) AS "no_ground: no ground found [%]",
@@ -102,7 +102,7 @@ SELECT place AS "place: points", method, percent(no_ground, points) AS "no_groun
        iif(told > 0, percent(wrong, points), NULL) AS "wrong_triangle: wrong triangle [%]"
 FROM points;
 
-/* {"chart": "P9-time", "title": "Depth of spheres in hills against the time for one",
+/* {"chart": "P9-time", "title": "Depth of spheres in hills against the time of a sphere",
     "settings": "{mesh}; medians of at least 60 frames", "mark": "point", "x": "time log",
     "y": "depth log0", "series": "method", "label": "configuration", "front": true} */
 SELECT * FROM shown_times;

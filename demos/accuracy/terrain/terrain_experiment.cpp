@@ -220,7 +220,7 @@ Findings findTerrain(const TerrainPlan& plan, std::uint64_t seed,
 Experiment terrainExperiment() {
     return {"P9",
             "Terrain",
-            "How deep do spheres sink into slopes and at edges, and who finds no ground?",
+            "How deep do spheres sink into slopes and at edges, and which methods find no ground?",
             3,
             22,
             [](const Effort& effort, const TellProgress& tell) {
