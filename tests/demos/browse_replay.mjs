@@ -290,7 +290,7 @@ async function checkMethod({ evaluate }) {
 }
 
 async function checkWrongPair({ tab, evaluate }, { frame, objects: [a, b] }) {
-    await evaluate("choose('broadphase', 'right')");
+    await evaluate("choose('broadphase', 'hash')");
     await evaluate("scrub(0)");
     await pictureAfter(evaluate, () => press(tab, "w"));
     const seen = await evaluate(wrongPair);
