@@ -123,7 +123,7 @@ async function checkFolds({ tab, evaluate }) {
     await tab("Emulation.setEmulatedMedia", { media: "print" });
     await evaluate("frames()");
     const hidden = await evaluate(`[...document.querySelectorAll(".fold > p, .fold > summary > h3, figure details table")]
-        .filter((element) => element.getBoundingClientRect().height === 0).map(named)`);
+        .filter((element) => !element.checkVisibility()).map(named)`);
     assert.deepEqual(hidden, [], "on paper");
     assert.equal(await evaluate(`getComputedStyle(document.querySelector(".contents")).display`), "none");
     await tab("Emulation.setEmulatedMedia", { media: "" });
