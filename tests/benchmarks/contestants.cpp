@@ -90,7 +90,7 @@ std::vector<ContestantKind> allKinds() {
         }
     }
     kinds.insert(kinds.begin() + 2, gridKind("grid"));
-    for (const auto& peersOf : {threadedKinds, cgalKinds, fclKinds, odeKinds}) {
+    for (const auto& peersOf : {threadedKinds, cgalKinds, fclKinds, odeKinds, joltKinds}) {
         for (ContestantKind& kind : peersOf()) {
             kinds.push_back(std::move(kind));
         }

@@ -36,6 +36,13 @@ inline std::vector<ContestantKind> odeKinds() {
     return {};
 }
 #endif
+#ifdef HASHPHASE_BENCHMARKS_JOLT_PACKAGE
+[[nodiscard]] std::vector<ContestantKind> joltKinds();
+#else
+inline std::vector<ContestantKind> joltKinds() {
+    return {};
+}
+#endif
 #ifdef HASHPHASE_BENCHMARKS_NANOFLANN_PACKAGE
 [[nodiscard]] std::vector<CrowdKind> nanoflannKinds();  // for crowds
 #else
