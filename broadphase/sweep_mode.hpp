@@ -12,7 +12,7 @@ enum class Sweep : std::uint8_t {
     none,       ///< no search: the proxy does not sweep
     box,        ///< the box around its way: for short ways, and ways along an axis
     line,       ///< along its way: for long ways, such as of bullets
-    automatic,  ///< box or line, whichever is less work
+    automatic,  ///< line if the way is long along two axes or three, else box
 };
 
 /// What sweeps cost in an update.

@@ -177,7 +177,9 @@ void ContactSearch<Scalar>::cut(std::uint32_t motion, const Aabb<double>& world,
     }
     const Point far = way.displacement.cwiseAbs();
     const Scalar length = kCellsPerSegment * std::max(cellSize, way.box.sizes().maxCoeff());
-    // Along one axis the box around the way is the way.
+    // Along one axis the box around the way is the way. Along more, segments are a fifth faster in a cube of 30,000
+    // boxes, and up to 3 % slower on flat ground; only where a few ways cross most of a small world is the box
+    // faster by more, up to 16 %.
     const bool isThin = (far.array() > length).count() < 2;
     const Sweep sweep = motions_[motion].sweep;
     if (sweep == Sweep::box || (sweep == Sweep::automatic && isThin) || !(length > 0)) {

@@ -2,8 +2,23 @@
 #include <demos/accuracy/experiment.hpp>
 
 #include <demos/report/frame_clock.hpp>
+#include <demos/scenes/random.hpp>
+
+#include <numeric>
+#include <utility>
 
 namespace hashphase::demos {
+namespace {
+
+// Each order as likely as any other.
+void shuffle(std::vector<std::size_t>& order, Random& random) {
+    for (std::size_t i = order.size(); i > 1; --i) {
+        std::swap(order[i - 1],
+                  order[static_cast<std::size_t>(random.unit() * static_cast<float>(i))]);
+    }
+}
+
+}  // namespace
 
 std::span<const Experiment> experiments() {
     static const std::vector<Experiment> all{
@@ -18,10 +33,13 @@ void measureTimes(Measurements& measured, const TimedFrames& timed,
                   const std::function<void(int frame)>& begin,
                   std::span<const TimedMethod> methods) {
     std::vector<std::vector<double>> times(methods.size());
+    std::vector<std::size_t> order(methods.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    Random random(0x5eed0d01);
     for (int frame = 0; frame < timed.warmUp + timed.frames; ++frame) {
         begin(frame);
-        for (std::size_t turn = 0; turn < methods.size(); ++turn) {
-            const std::size_t i = (turn + static_cast<std::size_t>(frame)) % methods.size();
+        shuffle(order, random);
+        for (const std::size_t i : order) {
             const FrameClock clock;
             methods[i].run();
             const double elapsed = clock.milliseconds();

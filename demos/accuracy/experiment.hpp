@@ -7,7 +7,7 @@
 // Truth     comes from brute force, in rational or much higher precision where rounding matters;
 //           never from a method under test.
 // Missed    and false answers are different columns: the former are wrong, the latter cost time.
-// Times     are medians of at least 60 different frames, methods in turn within each.
+// Times     are medians of at least 60 different frames, methods in random order within each.
 
 #include <demos/experiment/findings.hpp>
 
@@ -113,9 +113,10 @@ struct TimedMethod {
 };
 
 /// Times methods against each other so that their ratios can be trusted: runs begin(frame) and then all
-/// of them, in an order that rotates, for each of the frames. Adds the time of each, less what other
-/// programs took of the processor meanwhile, on this thread only: a row with the method's columns, and
-/// then "ms".
+/// of them for each of the frames, in an order that is drawn for each frame, and is the same in each run.
+/// In a fixed order, a method always finds in the processor's caches what the same other one has left
+/// there. Adds the time of each, less what other programs took of the processor meanwhile, on this thread
+/// only: a row with the method's columns, and then "ms".
 void measureTimes(Measurements& measured, const TimedFrames& timed,
                   const std::function<void(int frame)>& begin,
                   std::span<const TimedMethod> methods);

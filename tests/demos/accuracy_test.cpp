@@ -9,8 +9,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
+#include <map>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace hashphase::demos {
 namespace {
@@ -147,6 +151,47 @@ TEST(Accuracy, NamesBrokenChecksOnTopOfThePage) {
         holds(readFile(folder.file("r/accuracy.html")),
               "<p class=\"verdict bad\">1 experiment, 1 check: 1 BROKEN. BROKEN: B1: Nothing "
               "is missed (3 &lt; 10).</p>"));
+}
+
+/// In which order so many methods are measured, frame by frame.
+std::vector<std::vector<int>> measuredOrders(int methodCount, const TimedFrames& timed) {
+    std::vector<std::vector<int>> orders;
+    std::vector<TimedMethod> methods;
+    for (int i = 0; i < methodCount; ++i) {
+        methods.push_back({{{"method", i}}, [&orders, i] { orders.back().push_back(i); }});
+    }
+    Measurements measured;
+    measureTimes(
+        measured, timed, [&](int) { orders.emplace_back(); }, methods);
+    return orders;
+}
+
+TEST(MeasuredTimes, AreOfEachMethodOnceAFrameInTheSameOrdersInEachRun) {
+    const auto orders = measuredOrders(5, {.frames = 60, .warmUp = 3});
+    ASSERT_EQ(orders.size(), 63U);
+    for (std::vector<int> order : orders) {
+        std::ranges::sort(order);
+        EXPECT_EQ(order, (std::vector{0, 1, 2, 3, 4}));
+    }
+    EXPECT_EQ(measuredOrders(5, {.frames = 60, .warmUp = 3}), orders);
+}
+
+// Of 400 frames, each of four methods comes first in 100, and each of two directly before the other in 100, if all
+// orders are equally likely.
+TEST(MeasuredTimes, FollowThoseOfEachOtherMethodAboutAsOften) {
+    std::map<std::pair<int, int>, int> counts;
+    for (const std::vector<int>& order : measuredOrders(4, {.frames = 400})) {
+        int before = -1;
+        for (const int method : order) {
+            ++counts[{before, method}];
+            before = method;
+        }
+    }
+    EXPECT_EQ(counts.size(), 4U + 4U * 3U);
+    for (const auto& [pair, count] : counts) {
+        EXPECT_GT(count, 60) << pair.second << " behind " << pair.first;
+        EXPECT_LT(count, 140) << pair.second << " behind " << pair.first;
+    }
 }
 
 TEST(Accuracy, RefusesAFolderThatCannotBeWrittenBeforeItMeasures) {

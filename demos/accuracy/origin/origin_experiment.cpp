@@ -96,7 +96,7 @@ void judge(const OriginScene& scene, const BodyPlacement& place,
     }
 }
 
-/// Moves the scene, all methods in turn in each frame, and the first one at the origin as well;
+/// Moves the scene, all methods in each frame, and the first one at the origin as well;
 /// compares every tenth frame with exact arithmetic.
 void moveScene(const BodyPlacement& place, OriginScene scene, std::span<const OriginMethod> methods,
                Measurements& measured) {
@@ -184,7 +184,7 @@ std::size_t settleStep(const std::vector<Places>& course) {
     return step + 1;
 }
 
-/// Drops balls onto a floor at `offset` along all three axes, by all methods in turn.
+/// Drops balls onto a floor at `offset` along all three axes, by all methods.
 void settle(double offset, std::span<const SettleMethod> methods, Measurements& measured) {
     constexpr int steps = 300;
     constexpr btScalar stepLength = btScalar(1) / btScalar(60);  // [s]

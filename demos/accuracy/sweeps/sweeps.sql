@@ -61,7 +61,7 @@ SELECT 'bullets of radius 5 mm that touch a wall during a frame, at any moment o
        thousands(movers) || ' of ' || thousands(objects) || ' boxes fly, in new directions each frame, on '
        || 'the ground as far as is said and up or down by up to half as far; cells of 1 m; '
        || (SELECT group_concat(judged_frames, ', ') FROM motions) || ' frames judged, ' || timed_frames
-       || ' timed, methods in turn; seed ' || seed AS landscape
+       || ' timed, methods in random order; seed ' || seed AS landscape
 FROM plan;
 
 CREATE VIEW shown_moves AS
