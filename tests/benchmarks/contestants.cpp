@@ -90,7 +90,8 @@ std::vector<ContestantKind> allKinds() {
         }
     }
     kinds.insert(kinds.begin() + 2, gridKind("grid"));
-    for (const auto& peersOf : {threadedKinds, cgalKinds, fclKinds, odeKinds, joltKinds}) {
+    for (const auto& peersOf :
+         {threadedKinds, cgalKinds, fclKinds, odeKinds, joltKinds, physxKinds}) {
         for (ContestantKind& kind : peersOf()) {
             kinds.push_back(std::move(kind));
         }

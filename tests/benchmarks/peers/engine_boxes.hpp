@@ -41,4 +41,8 @@ public:
 [[nodiscard]] EngineBoxes* makeJoltBoxes(const EngineScene& scene);
 [[nodiscard]] EngineVersion joltVersion();
 
+[[nodiscard]] EngineBoxes* makePhysxAutomaticBoxes(const EngineScene& scene);
+[[nodiscard]] EngineBoxes* makePhysxRegionBoxes(const EngineScene& scene);
+[[nodiscard]] EngineVersion physxVersion();
+
 }  // namespace hashphase::benchmarks

@@ -92,4 +92,15 @@ std::vector<ContestantKind> joltKinds() {
 }
 #endif
 
+#ifdef HASHPHASE_BENCHMARKS_PHYSX_PACKAGE
+std::vector<ContestantKind> physxKinds() {
+    const std::string package = packageText(HASHPHASE_BENCHMARKS_PHYSX_PACKAGE, physxVersion());
+    return {engineKind("physx-abp", "physx::PxBroadPhase, eABP", "PhysX's automatic box pruning",
+                       package, makePhysxAutomaticBoxes),
+            engineKind("physx-mbp", "physx::PxBroadPhase, eMBP",
+                       "PhysX's box pruning in regions, a grid over the scene", package,
+                       makePhysxRegionBoxes)};
+}
+#endif
+
 }  // namespace hashphase::benchmarks

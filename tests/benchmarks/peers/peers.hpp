@@ -43,6 +43,13 @@ inline std::vector<ContestantKind> joltKinds() {
     return {};
 }
 #endif
+#ifdef HASHPHASE_BENCHMARKS_PHYSX_PACKAGE
+[[nodiscard]] std::vector<ContestantKind> physxKinds();
+#else
+inline std::vector<ContestantKind> physxKinds() {
+    return {};
+}
+#endif
 #ifdef HASHPHASE_BENCHMARKS_NANOFLANN_PACKAGE
 [[nodiscard]] std::vector<CrowdKind> nanoflannKinds();  // for crowds
 #else
