@@ -1,49 +1,58 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A file for results, opened before anything runs, so that a wrong path costs no waiting.
-
-#include <demos/scenes/input_error.hpp>
+// A file for results.
+//
+// Early     A path that cannot be written is refused before anything runs.
+// Whole     Bytes go to `<path>.partial`, which takes the file's place when all of them are there. Until then, and if
+//           the run ends early or the disk is full, an older file at the path stays as it is.
+// Devices   and pipes are written directly; /dev/stdout is the program's own standard output.
 
 #include <filesystem>
 #include <fstream>
-#include <string>
-#include <system_error>
+#include <iosfwd>
 
 namespace hashphase::demos {
 
 class ResultFile {
 public:
-    /// Opens the file; an empty path means none. Throws InputError when it cannot be written.
-    explicit ResultFile(const std::string& path) : path_(path) {
-        if (!path_.empty()) {
-            file_.open(path_, std::ios::binary);  // the same bytes on any system
-            refuseIfBad();
-        }
-    }
+    /// Opens the file; an empty path means none. Throws InputError if it cannot be written.
+    explicit ResultFile(std::filesystem::path path);
 
-    /// Calls writeTo(std::ostream&) and closes the file; does nothing when there is none.
+    /// Removes the bytes unless they are in their place.
+    ~ResultFile();
+    ResultFile(const ResultFile&) = delete;
+    ResultFile& operator=(const ResultFile&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+    /// Takes the bytes of the file.
+    [[nodiscard]] std::ostream& stream() noexcept { return *stream_; }
+
+    /// Throws InputError if bytes could not be written.
+    void requireGood() const;
+
+    /// Closes the file and puts it in its place. Throws InputError if not all bytes could be written.
+    void putInPlace();
+
+    /// Calls writeTo(std::ostream&) and puts the file in its place; does nothing if there is none.
     template <class WriteTo>
     void write(const WriteTo& writeTo) {
         if (!path_.empty()) {
-            writeTo(file_);
-            file_.close();
-            refuseIfBad();
+            writeTo(stream());
+            putInPlace();
         }
     }
 
 private:
-    void refuseIfBad() const {
-        if (!file_) {
-            std::error_code error;
-            throw InputError(path_ + (std::filesystem::is_directory(path_, error)
-                                          ? " is a folder, not a file."
-                                          : " cannot be written."));
-        }
-    }
+    void open();
+    void openPartial(const std::filesystem::file_status& older);
 
-    std::string path_;
+    std::filesystem::path path_;
+    std::filesystem::path target_;   // behind symbolic links
+    std::filesystem::path partial_;  // empty: the target is written directly
     std::ofstream file_;
+    std::ostream* stream_ = &file_;
 };
 
 }  // namespace hashphase::demos

@@ -6,6 +6,7 @@
 #include <demos/swarm/vtk_file.hpp>
 
 #include <demos/console/result_file.hpp>
+#include <demos/scenes/input_error.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -7,7 +7,7 @@
 // Numbers     raw bytes in this machine's order, with all their digits
 // Memory      at most 64 KiB, whatever the number of points or boxes
 // Misuse      std::invalid_argument for a field of another length, before the file is touched
-// Failure     InputError with the path for a file that cannot be written; a part of it may remain.
+// Failure     InputError with the path for a file that cannot be written; an older one stays as it is.
 //             InputError for a name with a control character, before the file is touched
 
 #include <array>

@@ -223,7 +223,8 @@ TEST(Compare, RefusesResultFilesThatCannotBeWritten) {
         const Typed outcome =
             runCompare({"compare", "--objects", "10", "--frames", "1", option, path});
         EXPECT_EQ(outcome.exitCode, kExitUsage);
-        EXPECT_EQ(outcome.err, "hashphase: " + path + " cannot be written.\n");
+        EXPECT_EQ(outcome.err,
+                  "hashphase: " + path + " cannot be written: No such file or directory.\n");
         EXPECT_EQ(outcome.out, "");
     }
 }

@@ -233,12 +233,14 @@ TEST(VtkFile, NamesAPathThatCannotBeWritten) {
     const TemporaryFolder folder;
     const std::string missing = folder.file("missing/a.vtp");
     const std::string itself = folder.path().string();
-    EXPECT_EQ(faultsOf(missing), std::vector(4, missing + " cannot be written."));
+    EXPECT_EQ(faultsOf(missing),
+              std::vector(4, missing + " cannot be written: No such file or directory."));
     EXPECT_EQ(faultsOf(itself), std::vector(4, itself + " is a folder, not a file."));
     EXPECT_EQ(faultsOf(""), std::vector<std::string>(4, "A file for ParaView needs a name."));
     if (std::filesystem::exists("/dev/full")) {
         EXPECT_EQ(faultsOf("/dev/full"),
-                  std::vector<std::string>(4, "/dev/full cannot be written."));
+                  std::vector<std::string>(
+                      4, "/dev/full cannot be written to its end; is the disk full?"));
     }
 }
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 
@@ -77,11 +78,16 @@ ImageDifference::ImageDifference(const Image& one, const Image& other) {
     shareOff = static_cast<double>(offCount) / count;
 }
 
+void savePng(const std::string& path, const Image& image) {
+    std::ofstream file(path, std::ios::binary);
+    writePng(image, file);
+}
+
 void expectGolden(const std::string& name, const Image& actual) {
     constexpr const char* kRewrite = "HASHPHASE_REWRITE_GOLDEN_PICTURES";
     const std::string golden = HASHPHASE_VIEWER_TESTS "/" + name + ".png";
     if (std::getenv(kRewrite) != nullptr) {
-        writePng(golden, actual);
+        savePng(golden, actual);
         return;
     }
     const ImageDifference difference(readPng(golden), actual);
@@ -90,9 +96,9 @@ void expectGolden(const std::string& name, const Image& actual) {
     }
     const std::string wrong =
         HASHPHASE_WRONG_PICTURES "/" + std::filesystem::path(name).filename().string();
-    writePng(wrong + "-actual.png", actual);
+    savePng(wrong + "-actual.png", actual);
     if (!difference.map.pixels.empty()) {
-        writePng(wrong + "-difference.png", difference.map);
+        savePng(wrong + "-difference.png", difference.map);
     }
     ADD_FAILURE() << "The picture is another one than " << golden << ": "
                   << 100 * difference.shareOff << " % of its pixels are off, by " << difference.mean

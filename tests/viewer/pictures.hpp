@@ -13,6 +13,9 @@ namespace hashphase::demos {
 /// As four bytes a pixel. Throws std::runtime_error where there is none.
 [[nodiscard]] Image readPng(const std::filesystem::path& path);
 
+/// Replaces the file.
+void savePng(const std::string& path, const Image& image);
+
 /// How much two pictures differ, as an eye would say: drivers may round in their own way, and move an edge by
 /// a part of a pixel. Of pictures after each pixel became the mean of its neighbourhood of three by three. The
 /// difference of two pixels is that of the channel that differs most, from 0 to 255.

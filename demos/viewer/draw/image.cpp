@@ -3,26 +3,17 @@
 
 #include <stb_image_write.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
+#include <ostream>
 
 namespace hashphase::demos {
 
-void writePng(const std::filesystem::path& path, const Image& image) {
+void writePng(const Image& image, std::ostream& file) {
     constexpr int kChannels = 4;
-    const auto writeBytes = [](void* file, void* bytes, int count) {
-        static_cast<std::ofstream*>(file)->write(static_cast<const char*>(bytes), count);
+    const auto writeBytes = [](void* out, void* bytes, int count) {
+        static_cast<std::ostream*>(out)->write(static_cast<const char*>(bytes), count);
     };
-    errno = 0;
-    std::ofstream file(path, std::ios::binary);
     stbi_write_png_to_func(writeBytes, &file, image.width, image.height, kChannels,
                            image.pixels.data(), kChannels * image.width);
-    file.close();
-    if (!file) {
-        throw DrawError("The picture " + path.string() + " cannot be written: " +
-                        (errno != 0 ? std::strerror(errno) : "the disk refuses") + ".");
-    }
 }
 
 }  // namespace hashphase::demos

@@ -5,13 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <iosfwd>
 #include <stdexcept>
 #include <vector>
 
 namespace hashphase::demos {
 
-/// A picture cannot be drawn or written; what() says why, and what to do where there is something.
+/// A picture cannot be drawn; what() says why, and what to do where there is something.
 struct DrawError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -30,7 +30,7 @@ struct Image {
     friend bool operator==(const Image&, const Image&) = default;
 };
 
-/// Replaces the file. Throws DrawError, naming the path and the fault, when it cannot be written.
-void writePng(const std::filesystem::path& path, const Image& image);
+/// The bytes of a .png file, which must be open in binary mode.
+void writePng(const Image& image, std::ostream& file);
 
 }  // namespace hashphase::demos

@@ -6,7 +6,7 @@
 
 #include <array>
 #include <bit>
-#include <system_error>
+#include <ostream>
 
 namespace hashphase::demos {
 namespace {
@@ -26,18 +26,9 @@ std::string reach() {
 
 }  // namespace
 
-BoxRecorder::BoxRecorder(const std::filesystem::path& path, int frames)
-    : path_(path), partial_(path.string() + ".partial"), frames_(frames) {
-    std::error_code ignored;
-    refuseIf(std::filesystem::is_directory(path_, ignored));
-    file_.open(partial_, std::ios::binary);
-    refuseIf(!file_);
-}
-
-// By another one, so that the destructor takes the file back where this one throws.
 BoxRecorder::BoxRecorder(const std::filesystem::path& path, std::string_view title,
                          const Stage& stage, int frames)
-    : BoxRecorder(path, frames) {
+    : file_(path), frames_(frames) {
     stage.listBoxes(boxes_, filters_);
     for (std::uint32_t index = 0; index < boxes_.size(); ++index) {
         if (boxes_[index].min().hasNaN()) {
@@ -56,7 +47,7 @@ BoxRecorder::BoxRecorder(const std::filesystem::path& path, std::string_view tit
     for (const std::string_view name : {title, std::string_view("hashphase wander")}) {
         std::array<char, 128> field{};
         name.copy(field.data(), field.size() - 1);
-        file_.write(field.data(), field.size());
+        file_.stream().write(field.data(), field.size());
     }
     for (const auto number :
          {static_cast<std::int32_t>(indices_.size()), std::int32_t{frames}, 0, 0}) {
@@ -64,14 +55,6 @@ BoxRecorder::BoxRecorder(const std::filesystem::path& path, std::string_view tit
     }
     writeBox(Aabb<float>(Vector3<float>::Zero(), Vector3<float>::Zero()));  // see putInPlace()
     writeFrame();
-}
-
-BoxRecorder::~BoxRecorder() {
-    if (!isComplete()) {
-        file_.close();
-        std::error_code ignored;
-        std::filesystem::remove(partial_, ignored);
-    }
 }
 
 void BoxRecorder::add(const Stage& stage) {
@@ -116,7 +99,7 @@ std::string BoxRecorder::faultSentence(const std::string& reason) const {
 template <class Number>
 void BoxRecorder::writeNumber(Number value) {
     const auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(value);
-    file_.write(bytes.data(), bytes.size());
+    file_.stream().write(bytes.data(), bytes.size());
 }
 
 void BoxRecorder::writeBox(const Aabb<float>& box) {
@@ -133,24 +116,14 @@ void BoxRecorder::writeFrame() {
         writeBox(boxes_[index]);
         world_.extend(boxes_[index]);
     }
-    refuseIf(!file_);
+    file_.requireGood();
 }
 
 // The world's box is known at the end.
 void BoxRecorder::putInPlace() {
-    file_.seekp(kWorldBoxPlace);
+    file_.stream().seekp(kWorldBoxPlace);
     writeBox(world_);
-    file_.close();
-    refuseIf(!file_);
-    std::error_code error;
-    std::filesystem::rename(partial_, path_, error);
-    refuseIf(bool(error));
-}
-
-void BoxRecorder::refuseIf(bool isBad) const {
-    if (isBad) {
-        throw InputError(path() + " cannot be written.");
-    }
+    file_.putInPlace();
 }
 
 }  // namespace hashphase::demos

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Writes the boxes of a stage's bodies, frame by frame, as a Broadmark recording (recording_scene.hpp). It is
-// written beside its place, and put there when it is complete: until then, and where it does not come to that,
-// a file that is there stays as it is.
+// Writes the boxes of a stage's bodies, frame by frame, as a Broadmark recording (recording_scene.hpp). The file
+// takes its place when it is complete (result_file.hpp).
 
+#include <demos/console/result_file.hpp>
 #include <demos/viewer/stage/stage.hpp>
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,10 +21,6 @@ public:
     /// out. Throws InputError where the file cannot be written, or nobody is left.
     BoxRecorder(const std::filesystem::path& path, std::string_view title, const Stage& stage,
                 int frames);
-    /// Leaves no file that is not complete.
-    ~BoxRecorder();
-    BoxRecorder(const BoxRecorder&) = delete;
-    BoxRecorder& operator=(const BoxRecorder&) = delete;
 
     /// Adds the frame that has been simulated. Throws InputError where the file cannot be written, and where a
     /// body that was there at the beginning is gone, or farther than kFarthest; nothing can be added then.
@@ -39,23 +34,19 @@ public:
     /// How many frames there are, "3 of 60 frames"; and what is to be said where there will be no more.
     [[nodiscard]] std::string progress() const;
     [[nodiscard]] std::string faultSentence(const std::string& reason) const;
-    [[nodiscard]] std::string path() const { return path_.string(); }
+    [[nodiscard]] std::string path() const { return file_.path().string(); }
 
     static constexpr float kFarthest = 1e6F;  // any coordinate [m]
 
 private:
-    BoxRecorder(const std::filesystem::path& path, int frames);
     [[nodiscard]] std::string leftOutText() const;
     template <class Number>
     void writeNumber(Number value);
     void writeBox(const Aabb<float>& box);
     void writeFrame();
     void putInPlace();
-    void refuseIf(bool isBad) const;
 
-    std::filesystem::path path_;
-    std::filesystem::path partial_;  // what is written
-    std::ofstream file_;
+    ResultFile file_;
     int frames_;
     int count_ = 0;                       // of frames after the first state
     std::vector<std::uint32_t> indices_;  // of those that are recorded

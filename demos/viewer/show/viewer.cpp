@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/viewer/show/viewer.hpp>
 
+#include <demos/console/result_file.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <ostream>
 
 namespace hashphase::demos {
 namespace {
@@ -43,7 +45,8 @@ void Viewer::show(Session& session, const Panel::Pointer& pointer, double second
     panel_.draw();
     for (const std::string& path : session.takeScreenshots()) {
         try {
-            writePng(path, renderer_.read());
+            ResultFile(path).write(
+                [this](std::ostream& file) { writePng(renderer_.read(), file); });
         } catch (const DrawError& error) {
             throw InputError(error.what());
         }

@@ -93,11 +93,8 @@ TEST(ImageDifference, IsWhatAnEyeSees) {
 TEST(Png, IsReadAsItWasWritten) {
     const TemporaryFolder folder;
     const Image image = sphereAt(0);
-    writePng(folder.file("a.png"), image);
+    savePng(folder.file("a.png"), image);
     EXPECT_EQ(readPng(folder.file("a.png")), image);
-    const std::string nowhere = folder.file("no_such_folder/a.png");
-    EXPECT_EQ(messageOf<DrawError>([&] { writePng(nowhere, image); }),
-              "The picture " + nowhere + " cannot be written: No such file or directory.");
 }
 
 }  // namespace

@@ -278,7 +278,8 @@ TEST_F(Wander, FindsOutBeforeItRunsWhereNothingCanBeWritten) {
         const Outcome refused = run("--objects 50 --frames 5 " + option + " /nowhere/a.json",
                                     {"--do", "save " + marker});
         EXPECT_EQ(refused.code, kExitUsage);
-        EXPECT_EQ(refused.err, "hashphase: /nowhere/a.json cannot be written.\n");
+        EXPECT_EQ(refused.err,
+                  "hashphase: /nowhere/a.json cannot be written: No such file or directory.\n");
         EXPECT_EQ(refused.out, "");
         EXPECT_FALSE(std::filesystem::exists(marker)) << option;
     }
@@ -300,7 +301,7 @@ TEST_F(Wander, KeepsWhatWasPlayedUntilAPictureCannotBeWritten) {
                             " --json " + file("n.json"));
     EXPECT_EQ(cut.code, kExitUsage);
     EXPECT_EQ(cut.out, "") << "of a script that was not run to its end there is no verdict";
-    expectIn(cut.err, "cannot be written");
+    expectIn(cut.err, file("") + " is a folder, not a file.");
     EXPECT_EQ(json::parse(std::ifstream(file("n.json")))["readings"]["frame"], 7);
     expectReplayed(file("kept.json"), 7);
 }
@@ -315,7 +316,7 @@ TEST_F(Wander, NamesEachFileThatCannotBeWrittenAndWritesTheOthers) {
         EXPECT_EQ(cut.code, kExitUsage);
         expectIn(cut.err, "/dev/full cannot be written");
         if (frames == 2) {
-            expectIn(cut.err, "The picture " + file("") + " cannot be written");
+            expectIn(cut.err, file("") + " is a folder, not a file.");
         }
         EXPECT_EQ(json::parse(std::ifstream(file("n.json")))["readings"]["frame"], frames);
     }

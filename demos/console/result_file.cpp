@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Zlib
+#include <demos/console/result_file.hpp>
+
+#include <demos/scenes/input_error.hpp>
+
+#include <cerrno>
+#include <iostream>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace hashphase::demos {
+namespace {
+
+// Streams of this process, such as /dev/stderr and /dev/fd/3, are links to links there.
+bool isInProc(const std::filesystem::path& path) {
+    return path.string().starts_with("/proc/");
+}
+
+std::filesystem::path behindLinks(std::filesystem::path path) {
+    constexpr int kMostLinks = 40;  // as systems have it
+    std::error_code ignored;
+    for (int i = 0; i < kMostLinks && !isInProc(path) && std::filesystem::is_symlink(path, ignored);
+         ++i) {
+        path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+    }
+    return path;
+}
+
+std::string reasonOf(int error) {
+    return error == 0 ? "" : ": " + std::generic_category().message(error);
+}
+
+}  // namespace
+
+ResultFile::ResultFile(std::filesystem::path path) : path_(std::move(path)) {
+    if (path_ == "/dev/stdout") {
+        stream_ = &std::cout;
+    } else if (!path_.empty()) {
+        open();
+    }
+}
+
+ResultFile::~ResultFile() {
+    if (!partial_.empty()) {
+        file_.close();
+        std::error_code ignored;
+        std::filesystem::remove(partial_, ignored);
+    }
+}
+
+void ResultFile::open() {
+    target_ = behindLinks(path_);
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(target_, ignored);
+    if (std::filesystem::is_directory(status)) {
+        throw InputError(path_.string() + " is a folder, not a file.");
+    }
+    errno = 0;
+    if (isInProc(target_) || std::filesystem::is_other(status)) {
+        file_.open(target_, std::ios::binary | std::ios::app);
+    } else {
+        openPartial(status);
+    }
+    if (!file_) {
+        throw InputError(path_.string() + " cannot be written" + reasonOf(errno) + ".");
+    }
+}
+
+void ResultFile::openPartial(const std::filesystem::file_status& older) {
+    if (std::filesystem::exists(older)) {
+        file_.open(target_, std::ios::binary | std::ios::in);  // changes nothing
+        if (!file_) {
+            return;
+        }
+        file_.close();
+    }
+    partial_ = target_;
+    partial_ += ".partial";
+    file_.open(partial_, std::ios::binary);  // the same bytes on any system
+    if (!file_) {
+        partial_.clear();
+    } else if (std::filesystem::exists(older)) {
+        std::error_code ignored;
+        std::filesystem::permissions(partial_, older.permissions(), ignored);
+    }
+}
+
+void ResultFile::requireGood() const {
+    if (!*stream_) {
+        throw InputError(path_.string() + " cannot be written to its end; is the disk full?");
+    }
+}
+
+void ResultFile::putInPlace() {
+    stream_->flush();
+    if (file_.is_open()) {
+        file_.close();
+    }
+    requireGood();
+    if (!partial_.empty()) {
+        std::error_code error;
+        std::filesystem::rename(partial_, target_, error);
+        if (error) {
+            throw InputError(path_.string() + " cannot be replaced: " + error.message() + ".");
+        }
+        partial_.clear();
+    }
+}
+
+}  // namespace hashphase::demos
