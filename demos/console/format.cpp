@@ -80,6 +80,13 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
     return table[a.size()][b.size()];
 }
 
+// Control characters of ASCII, and those of Latin-1.
+bool isObeyed(std::string_view character) {
+    const auto first = static_cast<unsigned char>(character[0]);
+    return first < 0x20 || first == 0x7f ||
+           (first == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0);
+}
+
 // The first of those that are nearest; empty where none is near.
 std::string nearestName(std::string_view name, std::span<const std::string> known) {
     std::string nearest;
@@ -150,6 +157,46 @@ std::string joined(std::span<const std::string> words, std::string_view separato
     return text;
 }
 
+std::size_t characterLength(std::string_view text) noexcept {
+    if (text.empty()) {
+        return 0;
+    }
+    const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t length = byte(0) < 0x80   ? 1
+                               : byte(0) < 0xc2 ? 0  // follows, or is too long for its character
+                               : byte(0) < 0xe0 ? 2
+                               : byte(0) < 0xf0 ? 3
+                               : byte(0) < 0xf5 ? 4
+                                                : 0;
+    if (length > text.size()) {
+        return 0;
+    }
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) {
+            return 0;
+        }
+    }
+    // Too long for their characters, surrogates, and beyond the last character.
+    const bool isNone = (byte(0) == 0xe0 && byte(1) < 0xa0) ||
+                        (byte(0) == 0xed && byte(1) > 0x9f) ||
+                        (byte(0) == 0xf0 && byte(1) < 0x90) || (byte(0) == 0xf4 && byte(1) > 0x8f);
+    return isNone ? 0 : length;
+}
+
+std::string masked(std::string_view text) {
+    std::string shown;
+    while (!text.empty()) {
+        const std::size_t length = characterLength(text);
+        if (length == 0 || isObeyed(text.substr(0, length))) {
+            shown += '?';
+        } else {
+            shown += text.substr(0, length);
+        }
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return shown;
+}
+
 std::string printable(std::string_view word) {
     constexpr std::size_t kMost = 40;
     std::size_t length = std::min(word.size(), kMost);
@@ -157,10 +204,7 @@ std::string printable(std::string_view word) {
     while (length < word.size() && length > 0 && (word[length] & 0xc0) == 0x80) {
         --length;
     }
-    std::string text(word.substr(0, length));
-    std::ranges::replace_if(
-        text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    return length < word.size() ? text + "..." : text;
+    return masked(word.substr(0, length)) + (length < word.size() ? "..." : "");
 }
 
 std::string quotedWord(std::string_view word) {

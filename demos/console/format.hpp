@@ -30,7 +30,13 @@ namespace hashphase::demos {
 /// The words, and between each two the separator: "a, b, c".
 [[nodiscard]] std::string joined(std::span<const std::string> words, std::string_view separator);
 
-/// A word of a user's: not all of a long one, and nothing that a terminal would obey. UTF-8 stays whole.
+/// The bytes of the character of UTF-8 with which the text begins; 0 if it begins with none.
+[[nodiscard]] std::size_t characterLength(std::string_view text) noexcept;
+
+/// The text with '?' instead of bytes that are no UTF-8, and of characters that a terminal would obey.
+[[nodiscard]] std::string masked(std::string_view text);
+
+/// A word of a user's, masked, and not all of a long one.
 [[nodiscard]] std::string printable(std::string_view word);
 
 /// The same between quotes.

@@ -58,7 +58,7 @@ void writeHelp(std::ostream& out) {
 }  // namespace
 
 int refuse(Console& console, const std::string& sentence) {
-    console.err << "hashphase: " << sentence << '\n';
+    console.err << "hashphase: " << masked(sentence) << '\n';
     return kExitUsage;
 }
 

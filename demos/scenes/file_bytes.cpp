@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/scenes/file_bytes.hpp>
 
+#include <demos/console/format.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
 #include <system_error>
@@ -15,6 +17,50 @@ namespace {
 bool isWideText(std::string_view bytes) {
     return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff") ||
            (bytes.size() > 1 && (bytes[0] == '\0') != (bytes[1] == '\0'));
+}
+
+struct FileKind {
+    std::string_view beginning;
+    std::string_view name;
+};
+
+using namespace std::string_view_literals;
+constexpr std::array kOtherKinds{
+    FileKind{"\x89PNG\r\n"sv, "a PNG picture"},
+    FileKind{"\xff\xd8\xff"sv, "a JPEG picture"},
+    FileKind{"GIF8"sv, "a GIF picture"},
+    FileKind{"RIFF"sv, "a picture, a sound or a film (RIFF)"},
+    FileKind{"%PDF"sv, "a PDF document"},
+    FileKind{"PK\3\4"sv, "a ZIP archive or an office document"},
+    FileKind{"\x1f\x8b"sv, "a gzip archive"},
+    FileKind{"\x7f"
+             "ELF"sv,
+             "a program"},
+    FileKind{"BULLETf"sv, "a world that Bullet saved, whose name should end in .bullet"},
+    FileKind{"BULLETd"sv, "a world that Bullet saved, whose name should end in .bullet"},
+};
+
+// What is wrong with a text, to follow "is "; empty: it is UTF-8 without zeros.
+std::string faultOfText(std::string_view bytes) {
+    if (isWideText(bytes)) {
+        return "UTF-16 or UTF-32: save it again as UTF-8";
+    }
+    for (const FileKind& kind : kOtherKinds) {
+        if (bytes.starts_with(kind.beginning)) {
+            return std::string(kind.name) + ", not a text file";
+        }
+    }
+    for (std::size_t place = 0; place < bytes.size();) {
+        const std::size_t length = characterLength(bytes.substr(place));
+        if (length == 0) {
+            return "not in UTF-8 (byte " + withThousands(place + 1) + "): save it again as UTF-8";
+        }
+        if (bytes[place] == '\0') {
+            return "not a text file: byte " + withThousands(place + 1) + " is 0";
+        }
+        place += length;
+    }
+    return {};
 }
 
 }  // namespace
@@ -57,9 +103,8 @@ std::string readFile(const std::filesystem::path& path) {
 std::string readText(const std::filesystem::path& path) {
     constexpr std::string_view kMark = "\xef\xbb\xbf";
     std::string text = readFile(path);
-    if (isWideText(text)) {
-        throw InputError(path.string() +
-                         " is no plain text but UTF-16 or UTF-32: save it again as UTF-8.");
+    if (const std::string fault = faultOfText(text); !fault.empty()) {
+        throw InputError(path.string() + " is " + fault + ".");
     }
     if (text.starts_with(kMark)) {
         text.erase(0, kMark.size());

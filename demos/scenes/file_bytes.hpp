@@ -26,8 +26,8 @@ void requireFile(const std::filesystem::path& path);
 /// cannot be read or is larger than kLargestFile. Memory: the file's size.
 [[nodiscard]] std::string readFile(const std::filesystem::path& path);
 
-/// The same of a text, without the byte-order mark that some editors put in front of UTF-8. Throws
-/// InputError for UTF-16 and UTF-32, too, which nothing here reads.
+/// The same of a text, without the byte-order mark that some editors put in front of UTF-8. Throws InputError, too,
+/// for a file that is no text in UTF-8; the message names the kind of file if it is known.
 [[nodiscard]] std::string readText(const std::filesystem::path& path);
 
 /// Whether the name of the file ends so, in capital letters or small ones: ".bullet".

@@ -98,7 +98,7 @@ TEST(TextFiles, MayBeginWithAByteOrderMarkAndEndLinesInAnyWay) {
 
 TEST(TextFiles, OfWideLettersAreRefusedByName) {
     const TemporaryFolder folder;
-    const std::string why = " is no plain text but UTF-16 or UTF-32: save it again as UTF-8.";
+    const std::string why = " is UTF-16 or UTF-32: save it again as UTF-8.";
     using namespace std::string_literals;
     for (const std::string& bytes :
          {"\xff\xfe\x30\0"s, "\xfe\xff\0\x30"s, "0\0 \0"s, "\0{\0}"s, "\xff\xfe\0\0{\0\0\0"s}) {
@@ -106,6 +106,24 @@ TEST(TextFiles, OfWideLettersAreRefusedByName) {
         EXPECT_EQ(messageOf<InputError>([&] { return readTextBoxes(path); }), path + why);
         EXPECT_EQ(messageOf<InputError>([&] { return readEffectsFile(path); }), path + why);
     }
+}
+
+TEST(TextFiles, OfAnotherKindAreRefusedByItsName) {
+    const TemporaryFolder folder;
+    for (const auto& [bytes, why] :
+         {std::pair<std::string, std::string>{"\x89PNG\r\n\x1a\n",
+                                              " is a PNG picture, not a text file."},
+          {"\xff\xd8\xff\xe0", " is a JPEG picture, not a text file."},
+          {"BULLETf_v282",
+           " is a world that Bullet saved, whose name should end in .bullet, not a text file."},
+          {"0 0 0 1 1 1 # caf\xe9\n", " is not in UTF-8 (byte 18): save it again as UTF-8."},
+          {std::string("0 0\0", 4), " is not a text file: byte 4 is 0."}}) {
+        const std::string path = folder.write("other", bytes);
+        EXPECT_EQ(messageOf<InputError>([&] { return readTextBoxes(path); }), path + why);
+        EXPECT_EQ(messageOf<InputError>([&] { return readEffectsFile(path); }), path + why);
+    }
+    EXPECT_EQ(readText(folder.write("text", "caf\xc3\xa9 \xf0\x9f\x98\x80")),
+              "caf\xc3\xa9 \xf0\x9f\x98\x80");
 }
 
 TEST(HostileFiles, ThatHoldSomethingElseAreRefused) {
