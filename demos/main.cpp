@@ -47,6 +47,7 @@ int become(const std::string& name, std::vector<std::string> arguments, Console&
 
 int main(int argc, char** argv) {
     Console console{std::cout, std::cerr, errIsTerminal(), "hashphase"};
+    console.columns = outColumns();
     return startSubcommand({argv + 1, argv + argc}, console,
                            [&console](const std::string& name, std::vector<std::string> rest) {
                                return become("hashphase-" + name, std::move(rest), console);

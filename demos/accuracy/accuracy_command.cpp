@@ -28,6 +28,7 @@ struct AccuracyOptions {
     Effort effort;
     std::string folder;               // for the report and its data; empty: none is written
     std::optional<double> timeLimit;  // [s], after which no experiment begins
+    bool isVerbose = false;           // print tables and conclusions
     bool quiet = false;
     bool list = false;
 };
@@ -46,8 +47,9 @@ void declare(CLI::App& app, AccuracyOptions& options) {
     app.add_option("--time-limit", options.timeLimit,
                    "after so many seconds begin no other experiment")
         ->transform(positiveSeconds());
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
-    app.add_flag("--list", options.list, "say which experiments there are");
+    app.add_flag("--verbose", options.isVerbose, "print all tables and conclusions");
+    app.add_flag("--quiet", options.quiet, "print no progress");
+    app.add_flag("--list", options.list, "print the experiments, and exit");
 }
 
 // An experiment that cannot go on has not shown what it was to show.
@@ -116,7 +118,7 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
     AccuracyReport report{options.effort, {}, {}, gatherProvenance(console.commandLine)};
     run(chosen, options, report, console);
 
-    printReport(report, console.out);
+    printReport(report, options.isVerbose, console);
     if (!options.folder.empty()) {
         writeReport(report, options.folder);
     }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/accuracy/accuracy_report.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/result_file.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
 
+#include <algorithm>
 #include <array>
 #include <ostream>
 
@@ -99,6 +101,58 @@ Json outcomeJson(const AccuracyReport& report, const Outcome& outcome) {
             {"choices", listOf(findings.choices, choice)}};
 }
 
+void printOutcome(const Outcome& outcome, bool isVerbose, const Console& console) {
+    const auto& [experiment, findings, seconds] = outcome;
+    const auto print = [&console](const std::string& text, std::size_t indent) {
+        console.out << wrapped(text, lineWidth(console), indent) << '\n';
+    };
+    std::string opening = std::string(experiment->id) + ' ' + std::string(experiment->title);
+    opening += isVerbose ? ": " + std::string(experiment->question)
+                         : ", " + fixed(seconds, seconds < 10 ? 1 : 0) + " s";
+    print(opening, 0);
+    if (isVerbose) {
+        for (const DataTable& table : findings.tables) {
+            console.out << '\n';
+            printTable(table, console.out);
+        }
+        console.out << '\n';
+    }
+    for (const Check& check : findings.checks) {
+        print(
+            (check.holds ? "  holds   " : "  BROKEN  ") + check.claim + " (" + check.evidence + ")",
+            10);
+    }
+    if (isVerbose) {
+        for (const std::string& conclusion : findings.conclusions) {
+            print("  " + conclusion, 2);
+        }
+    }
+    console.out << '\n';
+}
+
+/// Task by task, a line for each choice.
+void printAdvice(const DataTable& advice, const Console& console) {
+    if (advice.rows.empty()) {
+        return;
+    }
+    printSentences({"What to choose, in milliseconds. Of a task, each choice takes longer than the "
+                    "one above it, and gets less wrong."},
+                   console);
+    std::string task;
+    for (const std::vector<Value>& row : advice.rows) {
+        if (valueText(row[0]) != task) {
+            task = valueText(row[0]);
+            printSentences({task}, console);
+        }
+        constexpr std::size_t kIndent = 12;
+        std::string line = "  " + valueText(row[1]);
+        line.resize(std::max(line.size() + 1, kIndent), ' ');
+        line += valueText(row[2]) + ": " + valueText(row[3]);
+        console.out << wrapped(line, lineWidth(console), kIndent) << '\n';
+    }
+    console.out << '\n';
+}
+
 PageSection sectionOf(const Outcome& outcome, const Effort& effort) {
     const Findings& findings = outcome.findings;
     PageSection section{
@@ -162,33 +216,14 @@ DataTable adviceTable(std::span<const Choice> choices) {
     return table;
 }
 
-void printReport(const AccuracyReport& report, std::ostream& out) {
-    for (const auto& [experiment, findings, seconds] : report.outcomes) {
-        out << experiment->id << ' ' << experiment->title << ": " << experiment->question << '\n';
-        for (const DataTable& table : findings.tables) {
-            out << '\n';
-            printTable(table, out);
-        }
-        out << '\n';
-        for (const Check& check : findings.checks) {
-            out << (check.holds ? "  holds   " : "  BROKEN  ") << check.claim << " ("
-                << check.evidence << ")\n";
-        }
-        for (const std::string& conclusion : findings.conclusions) {
-            out << "  " << conclusion << '\n';
-        }
-        out << '\n';
+void printReport(const AccuracyReport& report, bool isVerbose, const Console& console) {
+    for (const Outcome& outcome : report.outcomes) {
+        printOutcome(outcome, isVerbose, console);
     }
-    const DataTable advice = adviceForPeople(report);
-    if (!advice.rows.empty()) {
-        printTable(advice, out);
-        out << '\n';
-    }
-    printProvenance(report.provenance, out);
-    out << verdictLine(report) << '\n';
-    for (const std::string& broken : brokenChecks(report)) {
-        out << broken << '\n';
-    }
+    printAdvice(adviceTable(allChoices(report)), console);
+    printProvenance(report.provenance, console);
+    printVerdict(verdictLine(report), console);
+    printSentences(brokenChecks(report), console);
 }
 
 Page pageOf(const AccuracyReport& report) {

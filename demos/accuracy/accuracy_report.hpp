@@ -7,7 +7,6 @@
 #include <demos/accuracy/experiment.hpp>
 #include <demos/report/page.hpp>
 
-#include <iosfwd>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,8 +36,9 @@ struct AccuracyReport {
 /// the error, has other units in other tasks, and is for programs.
 [[nodiscard]] DataTable adviceTable(std::span<const Choice> choices);
 
-/// Experiment by experiment its tables, checks and conclusions; then the advice and the verdict.
-void printReport(const AccuracyReport& report, std::ostream& out);
+/// Experiment by experiment its checks, with `isVerbose` its tables and conclusions as well; then the advice and the
+/// verdict.
+void printReport(const AccuracyReport& report, bool isVerbose, const Console& console);
 
 /// The verdict, what to choose, experiment by experiment what was found, and where.
 [[nodiscard]] Page pageOf(const AccuracyReport& report);

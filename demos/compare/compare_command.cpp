@@ -61,8 +61,9 @@ void declare(CLI::App& app, CompareOptions& options) {
         ->transform(wholeFrom(0, 10'000));
     app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
         ->transform(positiveSeconds());
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
-    app.add_flag("--list", options.list, "say which scenes and broadphases there are");
+    app.add_flag("--verbose", options.isVerbose, "print all columns, and the parts of a step");
+    app.add_flag("--quiet", options.quiet, "print no progress");
+    app.add_flag("--list", options.list, "print the scenes and broadphases, and exit");
 }
 
 void printLists(std::span<const BroadphaseKind> kinds, std::ostream& out) {
@@ -218,7 +219,7 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     report.wasAnythingTimed = end.framesDone > end.warmUpFrames;
     report.findings = compareFindings(measured);
 
-    printReport(report, console.out);
+    printReport(report, options.isVerbose, console);
     json.write([&report](std::ostream& file) { writeJson(report, file); });
     csv.write([&report](std::ostream& file) { writeCsv(report.findings.rows.at("csv"), file); });
     deliverPage(pageOf(report), html, console);

@@ -21,36 +21,35 @@ constexpr const char* kIntroduction =
     "it "
     "take? All broadphases ran the same frames, in turn within each frame.";
 
-void print(const std::vector<std::string>& lines, std::ostream& out) {
-    for (const std::string& line : lines) {
-        out << line << '\n';
-    }
-}
-
 }  // namespace
 
 Findings compareFindings(Measurements& measured) {
     return findingsOf(kCompareDeclaration, measured);
 }
 
-void printReport(const CompareReport& report, std::ostream& out) {
+void printReport(const CompareReport& report, bool isVerbose, const Console& console) {
     const auto& rows = report.findings.rows;
-    print(sentencesOf(rows.at("setting")), out);
-    printProvenance(report.provenance, out);
-    print(sentencesOf(rows.at("left out")), out);
-    out << '\n';
-    print(sentencesOf(rows.at("explanation")), out);
-    out << '\n';
-    printTable(withoutEmptyColumns(rows.at("table")), out);
-    if (const auto& sentences = rows.at("step sentences"); !sentences.rows.empty()) {
-        out << '\n';
-        print(sentencesOf(sentences), out);
+    const auto print = [&](const char* sentences) {
+        printSentences(sentencesOf(rows.at(sentences)), console);
+    };
+    print("setting");
+    printProvenance(report.provenance, console);
+    print("left out");
+    console.out << '\n';
+    print(isVerbose ? "explanation" : "short explanation");
+    console.out << '\n';
+    printTable(withoutEmptyColumns(rows.at(isVerbose ? "table" : "short table")), console.out);
+    if (const char* steps = isVerbose ? "step sentences" : "step gains";
+        !rows.at(steps).rows.empty()) {
+        console.out << '\n';
+        print(steps);
     }
-    if (const auto& steps = rows.at("step table"); !steps.rows.empty()) {
-        out << '\n';
-        printTable(steps, out);
+    if (const auto& steps = rows.at("step table"); isVerbose && !steps.rows.empty()) {
+        console.out << '\n';
+        printTable(steps, console.out);
     }
-    out << '\n' << report.findings.verdict << '\n';
+    console.out << '\n';
+    printVerdict(report.findings.verdict, console);
 }
 
 void writeJson(const CompareReport& report, std::ostream& out) {

@@ -27,8 +27,8 @@ struct CompareReport {
 /// Measured are the run, its broadphases and its frames. All that is checked are the pair sets of ours.
 [[nodiscard]] Findings compareFindings(Measurements& measured);
 
-/// What was run on what, the table, and the verdict.
-void printReport(const CompareReport& report, std::ostream& out);
+/// What was run on what, a table, and the verdict; with `isVerbose` all columns, and the parts of a step.
+void printReport(const CompareReport& report, bool isVerbose, const Console& console);
 
 /// Schema "hashphase-compare"; what was not measured is null, never NaN.
 void writeJson(const CompareReport& report, std::ostream& out);

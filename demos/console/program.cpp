@@ -132,6 +132,7 @@ int runMain(int argc, char** argv, Subcommand command) {
     command.name = "hashphase " + command.name;
     const std::vector<std::string> arguments(argv + 1, argv + argc);
     Console console{std::cout, std::cerr, errIsTerminal(), command.name};
+    console.columns = outColumns();
     for (const std::string& argument : arguments) {
         console.commandLine += " " + argument;
     }

@@ -7,6 +7,7 @@
 // Exit codes  0 all well, 1 a check failed, 2 wrong usage or bad input.
 // Output      results go to `out`; progress, warnings and errors to `err`.
 
+#include <cstddef>
 #include <functional>
 #include <iosfwd>
 #include <memory>
@@ -38,6 +39,7 @@ struct Console {
     std::function<void(const Page&)> takePage = {};
 
     std::vector<std::string> rest = {};  // words behind `--`
+    std::size_t columns = 0;             // of the terminal that shows `out`; 0: none does
 };
 
 /// Says what is wrong, and returns kExitUsage.

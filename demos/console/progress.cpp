@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/progress.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>
 #include <ostream>
-#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -23,10 +23,24 @@ ProgressStyle progressStyle(const Console& console, bool quiet) {
     return console.errIsTerminal ? ProgressStyle::kBar : ProgressStyle::kLines;
 }
 
-Progress::Progress(std::ostream& out, ProgressStyle style, std::string task, std::size_t total)
-    : out_(out), style_(style), task_(std::move(task)), total_(std::max<std::size_t>(total, 1)) {
+std::optional<double> secondsToGo(double elapsed, double share) noexcept {
+    constexpr double kFewestSeconds = 2;
+    constexpr double kLeastShare = 0.03;
+    return elapsed < kFewestSeconds || share < kLeastShare
+               ? std::nullopt
+               : std::optional(elapsed * (1 - share) / share);
+}
+
+Progress::Progress(std::ostream& out, ProgressStyle style, const std::string& task,
+                   std::size_t total, ProgressSurroundings surroundings)
+    : out_(out),
+      style_(style),
+      task_(masked(task)),
+      total_(std::max<std::size_t>(total, 1)),
+      surroundings_(surroundings),
+      lastDrawn_(surroundings_.now()) {
     if (style_ == ProgressStyle::kBar) {
-        drawBar(0, task_);
+        drawBar(0, task_, "");
         lastDrawn_ -= kBarInterval;  // the first step may take long
     }
 }
@@ -39,35 +53,50 @@ void Progress::clear() {
 }
 
 void Progress::update(std::size_t done, std::string_view what) {
-    const Clock::time_point now = Clock::now();
+    const Clock::time_point now = surroundings_.now();
+    if (!firstUpdate_) {
+        firstUpdate_ = now;
+        doneBefore_ = std::min(done, total_ - 1);
+    }
     const auto interval = style_ == ProgressStyle::kBar ? kBarInterval : kLineInterval;
     if (style_ == ProgressStyle::kSilent || now - lastDrawn_ < interval) {
         return;
     }
     lastDrawn_ = now;
-    std::string line = task_ + ": ";
-    line += what.empty() ? withThousands(done) + " of " + withThousands(total_) : std::string(what);
-    if (done > 0) {
-        const double elapsed = std::chrono::duration<double>(now - start_).count();
-        const double left = elapsed * static_cast<double>(total_ - std::min(done, total_)) /
-                            static_cast<double>(done);
-        line += ", " + fixed(left, left < 10 ? 1 : 0) + " s to go";
-    }
+    std::string text = task_ + ": ";
+    text += what.empty() ? withThousands(done) + " of " + withThousands(total_) : std::string(what);
     if (style_ == ProgressStyle::kBar) {
-        drawBar(done, line);
+        drawBar(done, text, toGoText(done, now));
     } else if (done < total_) {
-        out_ << line << std::endl;
+        out_ << text << toGoText(done, now) << std::endl;
     }
 }
 
-void Progress::drawBar(std::size_t done, const std::string& line) {
+std::string Progress::toGoText(std::size_t done, Clock::time_point now) const {
+    const auto stepsSince =
+        static_cast<double>(std::clamp(done, doneBefore_, total_) - doneBefore_);
+    const std::optional<double> left =
+        secondsToGo(std::chrono::duration<double>(now - *firstUpdate_).count(),
+                    stepsSince / static_cast<double>(total_ - doneBefore_));
+    return left ? ", " + fixed(*left, *left < 10 ? 1 : 0) + " s to go" : "";
+}
+
+// In a line: the text is clipped, and the time that is left stays.
+void Progress::drawBar(std::size_t done, const std::string& text, const std::string& toGo) {
+    const std::size_t columns = surroundings_.columns();
+    const std::size_t room =
+        (columns > 0 ? columns : kUsualColumns) - 1;  // terminals may break a full line
     const std::size_t filled = std::min(done, total_) * kBarWidth / total_;
     const std::string bar =
-        '[' + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] " + line;
+        '[' + std::string(filled, '#') + std::string(kBarWidth - filled, '.') + "] ";
+    const std::size_t taken = bar.size() + toGo.size();
+    const std::string line =
+        clipped(bar + clipped(text, room - std::min(room, taken)) + toGo, room);
+    const std::size_t width = columnsOf(line);
     // Blanks wipe what a longer line before left behind.
-    out_ << '\r' << bar << std::string(drawnWidth_ - std::min(drawnWidth_, bar.size()), ' ')
-         << std::flush;
-    drawnWidth_ = bar.size();
+    const std::size_t wiped = std::min(drawnWidth_, room);
+    out_ << '\r' << line << std::string(wiped - std::min(wiped, width), ' ') << std::flush;
+    drawnWidth_ = width;
 }
 
 }  // namespace hashphase::demos

@@ -149,7 +149,9 @@ UNION ALL SELECT sentence FROM below_zero
 UNION ALL SELECT '' UNION ALL
 SELECT substr(effect || '              ', 1, 14) || work || char(10) || '              without: ' || lost
 FROM prices
-UNION ALL SELECT '' UNION ALL
+UNION ALL SELECT '';
+
+/* {"rows": "end of the run"} */
 SELECT iif(holds, 'holds   ', 'BROKEN  ') || claim || ' (' || evidence || ')' FROM checks
 UNION ALL SELECT 'The time limit was reached.' FROM run WHERE limit_hit;
 

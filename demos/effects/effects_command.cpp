@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/effects/effects_command.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
@@ -105,15 +106,17 @@ Measurements measure(const EffectsFile& file, PricingSettings settings,
     return priceEffects(file, settings);
 }
 
-void printReport(const Findings& findings, const Provenance& provenance, std::ostream& out) {
+void printReport(const Findings& findings, const Provenance& provenance, const Console& console) {
     const auto& [caption, prices] = findings.printed.front();
-    out << caption << '\n';
-    printTable(prices, out);
+    printSentences({caption}, console);
+    printTable(prices, console.out);
+    constexpr std::size_t kIndent = 14;  // of what an effect does
     for (const std::string& line : sentencesOf(findings.rows.at("below"))) {
-        out << line << '\n';
+        console.out << wrapped(line, lineWidth(console), kIndent) << '\n';
     }
-    printProvenance(provenance, out);
-    out << findings.verdict << '\n';
+    printSentences(sentencesOf(findings.rows.at("end of the run")), console);
+    printProvenance(provenance, console);
+    printVerdict(findings.verdict, console);
 }
 
 /// Every variant with its times, counters and bytes, and the prices.
@@ -163,7 +166,7 @@ int runEffects(const EffectsOptions& options, Console& console, std::size_t (*al
     settings.allocationCount = allocationCount;
     Measurements measured = measure(file, settings, options, console);
     const Findings findings = effectsFindings(measured);
-    printReport(findings, provenance, console.out);
+    printReport(findings, provenance, console);
     json.write([&](std::ostream& out) { writeJson(findings, provenance, file, out); });
     csv.write([&](std::ostream& out) { writeCsv(findings.rows.at("csv"), out); });
     deliverPage({"What each effect costs", kIntroduction, findings.verdict + ".", findings.holds,

@@ -73,8 +73,8 @@ struct PaperReport {
 /// Times do not matter.
 [[nodiscard]] int exitCodeOf(const PaperReport& report);
 
-/// The figures as tables; `showMilliseconds` in place of frames a second.
-void printReport(PaperReport& report, bool showMilliseconds, std::ostream& out);
+/// The figures as tables, in milliseconds or in frames a second, what was checked, and the verdict.
+void printReport(PaperReport& report, bool showMilliseconds, const Console& console);
 
 /// Schema "hashphase-paper".
 void writeJson(PaperReport& report, std::ostream& out);

@@ -66,7 +66,7 @@ int runPaper(const PaperOptions& options, Console& console) {
         return measurePaper(plan, watcher);
     };
     PaperReport report(plan, measure(), std::move(provenance));
-    printReport(report, options.showMilliseconds, console.out);
+    printReport(report, options.showMilliseconds, console);
     json.write([&report](std::ostream& out) { writeJson(report, out); });
     csv.write([&report](std::ostream& out) { writeCsv(report, out); });
     deliverPage(pageOf(report), html, console);

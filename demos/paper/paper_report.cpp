@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/paper/paper.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
 
@@ -22,7 +23,7 @@ constexpr const char* kPaperIntroduction =
     "hash that replaces the broadphase of the Bullet physics engine.";
 
 /// The first two columns stand in one.
-void printGraded(const GradedTable& table, std::ostream& out) {
+void printGraded(const GradedTable& table, const TableStyle& style, std::ostream& out) {
     if (table.rows.empty()) {
         return;
     }
@@ -43,7 +44,7 @@ void printGraded(const GradedTable& table, std::ostream& out) {
         text.add(std::move(cells));
     }
     out << table.caption << '\n';
-    printTable(text, out);
+    printTable(text, out, style);
     out << '\n';
 }
 
@@ -59,37 +60,41 @@ int exitCodeOf(const PaperReport& report) {
     return report.findings.holds == true ? kExitOk : kExitCheckFailed;
 }
 
-void printReport(PaperReport& report, bool showMilliseconds, std::ostream& out) {
-    const auto printLines = [&](std::string_view lines) {
-        for (const std::string& line : sentencesOf(report.measured.ask(lines))) {
-            out << line << '\n';
-        }
+void printReport(PaperReport& report, bool showMilliseconds, const Console& console) {
+    const auto print = [&](std::string_view sql) {
+        printSentences(sentencesOf(report.measured.ask(sql)), console);
     };
-    out << "The figures of Hastings, Mesit and Guha: as printed (Pentium 4, 3.2 GHz), and on this "
-           "machine.\n\"!\" is too slow for real time, below 20 frames a second; \"~\" is below "
-           "60.\n\n";
+    const TableStyle style{.columns = lineWidth(console)};
+    std::ostream& out = console.out;
+    printSentences(
+        {"The figures of Hastings, Mesit and Guha: as printed (Pentium 4, 3.2 GHz), and on "
+         "this machine. \"!\" is too slow for real time, below 20 frames a second; \"~\" is "
+         "below 60.\n"},
+        console);
     for (const PageSection& section : report.findings.sections) {
         if (!section.graded.empty()) {
-            printGraded(section.graded[showMilliseconds ? 1 : 0], out);
+            printGraded(section.graded[showMilliseconds ? 1 : 0], style, out);
         }
     }
     for (const auto& [caption, table] : report.findings.printed) {
         if (!table.rows.empty()) {
-            out << caption << '\n';
-            printTable(table, out);
+            printSentences({caption}, console);
+            printTable(table, out, style);
             out << '\n';
         }
     }
-    printLines("SELECT sentence FROM observations");
+    print("SELECT sentence FROM observations");
     out << '\n';
-    printLines("SELECT sentence FROM how_it_was_measured");
-    printLines("SELECT 'Left out for want of time: ' || what FROM all_left_out");
+    print("SELECT sentence FROM how_it_was_measured");
+    print("SELECT 'Left out for want of time: ' || what FROM all_left_out");
     out << '\n';
-    printLines(
+    print(
         "SELECT CASE holds WHEN 1 THEN 'holds' WHEN 0 THEN 'BROKEN' ELSE 'not checked' END || ': ' "
         "|| claim || ' (' || evidence || ')' FROM claims");
-    printProvenance(report.provenance, out);
-    out << report.findings.verdict << '\n';
+    printProvenance(report.provenance, console);
+    out << '\n';
+    printVerdict(report.findings.verdict, console);
+    print("SELECT sentence FROM real_time_sentences");
 }
 
 void writeJson(PaperReport& report, std::ostream& out) {

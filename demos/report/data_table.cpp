@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/report/data_table.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <ostream>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -49,6 +53,96 @@ bool isOfTimes(const DataColumn& column) {
     return std::any_of(kUnits.begin(), kUnits.end(), [&](std::string_view unit) {
         return title.find(unit) != std::string::npos;
     });
+}
+
+// --- Text ----------------------------------------------------------------------------------------
+
+using Row = std::vector<std::string>;
+using Rows = std::vector<Row>;
+
+constexpr std::size_t kGap = 2;  // between columns
+
+Rows textsOf(const DataTable& table) {
+    Rows rows(1);
+    for (const DataColumn& column : table.columns) {
+        rows[0].push_back(titleOf(column));
+    }
+    for (const std::vector<Value>& values : table.rows) {
+        Row& row = rows.emplace_back();
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            row.push_back(cellText(values[i], table.columns[i]));
+        }
+    }
+    return rows;
+}
+
+std::size_t longestWord(std::string_view text) {
+    std::size_t longest = 0;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find(' '), text.size());
+        longest = std::max(longest, columnsOf(text.substr(0, end)));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return longest;
+}
+
+std::size_t lineWidthOf(const std::vector<std::size_t>& widths) {
+    return std::accumulate(widths.begin(), widths.end(),
+                           kGap * (std::max<std::size_t>(widths.size(), 1) - 1));
+}
+
+// The widest columns become narrower, down to their longest words, until all fit; 0: there is room for any.
+std::vector<std::size_t> widthsFor(const Rows& rows, std::size_t room) {
+    std::vector<std::size_t> widths(rows[0].size());
+    std::vector<std::size_t> least(widths.size());
+    for (const Row& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            widths[i] = std::max(widths[i], columnsOf(row[i]));
+            least[i] = std::max(least[i], longestWord(row[i]));
+        }
+    }
+    std::size_t sum = lineWidthOf(widths);
+    while (room > 0 && sum > room) {
+        std::size_t* widest = nullptr;
+        for (std::size_t i = 0; i < widths.size(); ++i) {
+            if (widths[i] > least[i] && (widest == nullptr || widths[i] > *widest)) {
+                widest = &widths[i];
+            }
+        }
+        if (widest == nullptr) {
+            break;
+        }
+        --*widest;
+        --sum;
+    }
+    return widths;
+}
+
+// A cell that is wider than its column has several lines.
+std::string linesOf(const Row& row, const std::vector<std::size_t>& widths,
+                    const TableStyle& style) {
+    std::vector<Row> lines(1, Row(row.size()));
+    for (std::size_t column = 0; column < row.size(); ++column) {
+        std::istringstream cell(wrapped(row[column], widths[column]));
+        std::size_t i = 0;
+        for (std::string part; std::getline(cell, part); ++i) {
+            lines.resize(std::max(lines.size(), i + 1), Row(row.size()));
+            lines[i][column] = std::move(part);
+        }
+    }
+    std::string text;
+    for (const Row& parts : lines) {
+        for (std::size_t column = 0; column < parts.size(); ++column) {
+            const std::string blanks(
+                widths[column] - std::min(widths[column], columnsOf(parts[column])), ' ');
+            const bool isToTheLeft = column == 0 || style.isOfWords;
+            text += column > 0 ? std::string(kGap, ' ') : "";
+            text += isToTheLeft ? parts[column] + blanks : blanks + parts[column];
+        }
+        text.erase(text.find_last_not_of(' ') + 1);
+        text += '\n';
+    }
+    return text;
 }
 
 }  // namespace
@@ -133,33 +227,13 @@ DataTable spread(const DataTable& cells) {
     return table;
 }
 
-void printTable(const DataTable& table, std::ostream& out, bool isOfWords) {
-    std::vector<std::vector<std::string>> lines(table.rows.size() + 1);  // the header first
-    std::vector<std::size_t> widths;
-    std::size_t widthOfRule = 0;
-    for (std::size_t column = 0; column < table.columns.size(); ++column) {
-        lines[0].push_back(titleOf(table.columns[column]));
-        std::size_t width = lines[0].back().size();
-        for (std::size_t row = 0; row < table.rows.size(); ++row) {
-            lines[row + 1].push_back(cellText(table.rows[row].at(column), table.columns[column]));
-            width = std::max(width, lines[row + 1].back().size());
-        }
-        widths.push_back(width);
-        widthOfRule += (column > 0 ? 2 : 0) + width;
-    }
-    for (const std::vector<std::string>& cells : lines) {
-        std::string line;
-        for (std::size_t column = 0; column < cells.size(); ++column) {
-            const std::string blanks(widths[column] - cells[column].size(), ' ');
-            const bool isToTheLeft = column == 0 || isOfWords;
-            line += column > 0 ? "  " : "";
-            line += isToTheLeft ? cells[column] + blanks : blanks + cells[column];
-        }
-        line.erase(line.find_last_not_of(' ') + 1);
-        out << line << '\n';
-        if (&cells == lines.data()) {
-            out << std::string(widthOfRule, '-') << '\n';
-        }
+void printTable(const DataTable& table, std::ostream& out, const TableStyle& style) {
+    const Rows rows = textsOf(table);  // the header first
+    const std::vector<std::size_t> widths = widthsFor(rows, style.columns);
+    out << linesOf(rows.front(), widths, style);
+    out << std::string(lineWidthOf(widths), '-') << '\n';
+    for (auto row = rows.begin() + 1; row != rows.end(); ++row) {
+        out << linesOf(*row, widths, style);
     }
 }
 

@@ -4,6 +4,7 @@
 // Measurements as rows under named columns: the one form in which they are kept. Reports show it as a
 // table, charts draw it, CSV and JSON files hold it.
 
+#include <cstddef>
 #include <iosfwd>
 #include <string>
 #include <string_view>
@@ -48,9 +49,16 @@ struct DataTable {
 /// names a column, in the order of the first row, and the second is what stands in it.
 [[nodiscard]] DataTable spread(const DataTable& cells);
 
-/// As text, a rule under the header, no blanks at line ends. The first column is aligned to the left, the others
-/// to the right, as numbers are, or as words are.
-void printTable(const DataTable& table, std::ostream& out, bool isOfWords = false);
+struct TableStyle {
+    std::size_t columns =
+        0;  // of a line, at most: long cells have several lines; 0: as many as it takes
+    bool isOfWords =
+        false;  // aligned to the left as the first column is; else to the right, as numbers are
+};
+
+/// As text, a rule under the header, no blanks at line ends. A word is not broken: with many columns lines may still
+/// be longer than asked for.
+void printTable(const DataTable& table, std::ostream& out, const TableStyle& style = {});
 
 /// RFC 4180: a header line of the columns' names, numbers with all digits, nothing as an empty field.
 void writeCsv(const DataTable& table, std::ostream& out);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/report/report_text.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
+#include <demos/console/program.hpp>
 
 #include <algorithm>
 #include <ostream>
@@ -123,6 +125,22 @@ void printProvenance(const Provenance& provenance, std::ostream& out) {
     for (const std::string& caution : cautionsOf(provenance)) {
         out << caution << '\n';
     }
+}
+
+void printProvenance(const Provenance& provenance, const Console& console) {
+    std::ostringstream text;
+    printProvenance(provenance, text);
+    console.out << wrapped(text.str(), lineWidth(console));
+}
+
+void printSentences(const std::vector<std::string>& sentences, const Console& console) {
+    for (const std::string& sentence : sentences) {
+        console.out << wrapped(sentence, lineWidth(console)) << '\n';
+    }
+}
+
+void printVerdict(const std::string& verdict, const Console& console) {
+    console.out << (console.columns == 0 ? verdict : wrapped(verdict, lineWidth(console))) << '\n';
 }
 
 }  // namespace hashphase::demos

@@ -15,6 +15,8 @@
 
 namespace hashphase::demos {
 
+struct Console;
+
 /// "3.14x", "16.4x"; "-" for none.
 [[nodiscard]] std::string ratioText(const std::optional<double>& ratio);
 
@@ -44,5 +46,13 @@ namespace hashphase::demos {
 
 /// A line with versions, compiler and processor, and cautionsOf().
 void printProvenance(const Provenance& provenance, std::ostream& out);
+
+// --- In lines that fit the console ---------------------------------------------------------------
+
+void printProvenance(const Provenance& provenance, const Console& console);
+void printSentences(const std::vector<std::string>& sentences, const Console& console);
+
+/// The last line, which programs look for: whole in a file or a pipe.
+void printVerdict(const std::string& verdict, const Console& console);
 
 }  // namespace hashphase::demos

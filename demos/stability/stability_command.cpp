@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/stability/stability_command.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
@@ -205,18 +206,16 @@ Measurements runCases(const Cases& cases, const Kinds& kinds, const StabilityOpt
 
 /// A row for each case; all about each case where that was asked for; what is not as required; the
 /// verdict.
-void printReport(const Findings& findings, const Provenance& provenance, std::ostream& out) {
+void printReport(const Findings& findings, const Provenance& provenance, const Console& console) {
     const auto& [legend, table] = findings.printed.front();
     if (!table.rows.empty()) {
-        printTable(table, out, true);
-        out << legend << '\n';
+        printTable(table, console.out, {.columns = lineWidth(console), .isOfWords = true});
+        printSentences({legend}, console);
     }
-    for (const std::string& explained : sentencesOf(findings.rows.at("explained"))) {
-        out << explained << '\n';
-    }
-    out << '\n';
-    printProvenance(provenance, out);
-    out << findings.verdict << '\n';
+    printSentences(sentencesOf(findings.rows.at("explained")), console);
+    console.out << '\n';
+    printProvenance(provenance, console);
+    printVerdict(findings.verdict, console);
 }
 
 /// Schema "hashphase-stability".
@@ -263,7 +262,7 @@ int runStability(const StabilityOptions& options, std::span<const BroadphaseKind
     Measurements measured = runCases(cases, kinds, options, console);
     const Findings findings = findingsOf(kStabilityDeclaration, measured);
 
-    printReport(findings, provenance, console.out);
+    printReport(findings, provenance, console);
     json.write(
         [&](std::ostream& file) { writeJson(findings, provenance, options, measured, file); });
     csv.write([&](std::ostream& file) { writeCsv(findings.rows.at("csv"), file); });

@@ -4,6 +4,7 @@
 // What the system knows of a program while it runs: process_posix.cpp, process_windows.cpp.
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,6 +14,12 @@ namespace hashphase::demos {
 
 /// Whether somebody reads stderr on a screen.
 [[nodiscard]] bool errIsTerminal() noexcept;
+
+/// The columns of the terminal that shows stdout, or stderr; 0 where none does.
+[[nodiscard]] std::size_t outColumns() noexcept;
+[[nodiscard]] std::size_t errColumns() noexcept;
+
+inline constexpr std::size_t kUsualColumns = 80;  // of a terminal that does not report them
 
 /// Where the program of that name is, if it is beside the one that runs.
 [[nodiscard]] std::filesystem::path programBeside(const std::string& name);

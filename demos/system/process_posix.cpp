@@ -9,13 +9,33 @@
 #if HASHPHASE_HAS_AFFINITY
 #include <sched.h>
 #endif
+#include <sys/ioctl.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
 namespace hashphase::demos {
+namespace {
+
+std::size_t columnsOfTerminal(int file) noexcept {
+    winsize size{};
+    if (isatty(file) == 0) {
+        return 0;
+    }
+    return ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsualColumns;
+}
+
+}  // namespace
 
 bool errIsTerminal() noexcept {
     return isatty(STDERR_FILENO) != 0;
+}
+
+std::size_t outColumns() noexcept {
+    return columnsOfTerminal(STDOUT_FILENO);
+}
+
+std::size_t errColumns() noexcept {
+    return columnsOfTerminal(STDERR_FILENO);
 }
 
 std::filesystem::path programBeside(const std::string& name) {

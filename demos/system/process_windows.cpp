@@ -28,10 +28,25 @@ std::wstring quoted(const std::wstring& argument) {
     return text.append(backslashes, L'\\') + L'"';
 }
 
+std::size_t columnsOfConsole(DWORD stream) noexcept {
+    CONSOLE_SCREEN_BUFFER_INFO screen{};
+    return GetConsoleScreenBufferInfo(GetStdHandle(stream), &screen) != 0
+               ? static_cast<std::size_t>(screen.srWindow.Right - screen.srWindow.Left + 1)
+               : 0;
+}
+
 }  // namespace
 
 bool errIsTerminal() noexcept {
     return _isatty(2) != 0;
+}
+
+std::size_t outColumns() noexcept {
+    return columnsOfConsole(STD_OUTPUT_HANDLE);
+}
+
+std::size_t errColumns() noexcept {
+    return columnsOfConsole(STD_ERROR_HANDLE);
 }
 
 std::filesystem::path programBeside(const std::string& name) {

@@ -46,9 +46,20 @@ TEST(Accuracy, EndsWithAVerdict) {
     EXPECT_EQ(ran.exitCode, kExitOk) << ran.err;
     EXPECT_TRUE(holds(ran.out, "\n2 experiments, 1 check: all hold\n"));
     EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing (0 of 1,000,000)\n"));
-    EXPECT_TRUE(holds(ran.out, "  Sweeping along a line costs twice as much"));
-    EXPECT_TRUE(holds(ran.out, "misses nothing\n")) << "the advice";
+    EXPECT_TRUE(holds(ran.out, "\nFast movers\n  ")) << "the advice";
+    EXPECT_TRUE(holds(ran.out, "\n  2         Sweep::line: misses nothing\n"));
     EXPECT_FALSE(holds(ran.out, "misses a fifth")) << "slower and worse than another choice";
+}
+
+TEST(Accuracy, PrintsALineOfAnExperimentAndItsTablesOnRequest) {
+    const Typed brief = runAccuracy({});
+    EXPECT_TRUE(holds(brief.out, "S1 Samples, "));
+    EXPECT_FALSE(holds(brief.out, "What do charts look like?"));
+    EXPECT_FALSE(holds(brief.out, "  Sweeping along a line costs twice as much"));
+    const Typed verbose = runAccuracy({"--verbose"});
+    EXPECT_TRUE(holds(verbose.out, "S1 Samples: What do charts look like?\n"));
+    EXPECT_TRUE(holds(verbose.out, "  Sweeping along a line costs twice as much"));
+    EXPECT_GT(verbose.out.size(), brief.out.size() + 100) << "the tables";
 }
 
 TEST(Accuracy, ListsTheExperiments) {

@@ -81,6 +81,35 @@ TEST(DataTable, IsAlignedInTextAndLeavesNoBlanksAtLineEnds) {
               "dbvt-deferred  12.25     x\n");
 }
 
+TEST(DataTable, BreaksLongCellsWhereItWouldBeTooWide) {
+    const DataTable table{{{"name"}, {"what it does"}, {"n"}},
+                          {{"a", "one two three four", 1.0}, {"b", "five", 22.0}, {"", "", ""}}};
+    std::ostringstream out;
+    printTable(table, out, {.columns = 20});
+    EXPECT_EQ(out.str(),
+              "name     what it   n\n"
+              "            does\n"
+              "--------------------\n"
+              "a        one two   1\n"
+              "      three four\n"
+              "b           five  22\n"
+              "\n");
+    std::ostringstream words;
+    printTable(table, words, {.columns = 3, .isOfWords = true});
+    EXPECT_EQ(words.str(),
+              "name  what   n\n"
+              "      it\n"
+              "      does\n"
+              "---------------\n"
+              "a     one    1\n"
+              "      two\n"
+              "      three\n"
+              "      four\n"
+              "b     five   22\n"
+              "\n")
+        << "words are not broken";
+}
+
 TEST(DataTable, FindsColumnsByName) {
     const DataTable table{{{"a"}, {"b", "the b"}}, {}};
     EXPECT_EQ(table.columnOf("b"), 1U);

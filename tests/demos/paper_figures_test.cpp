@@ -118,20 +118,37 @@ TEST(PaperTallies, CountThePapersSlowCellsByPhaseAndMethod) {
 }
 
 TEST(PaperReport, ClaimsTheSameCellSizeOfCollisionAloneAndCountsNoVisibility) {
+    PaperReport report = reportOfRows(kFigureRows);
+    EXPECT_EQ(report.findings.verdict,
+              "In real time: 13 of the paper's 15 slow cells. All methods found the same as brute "
+              "force: yes");
     EXPECT_EQ(
-        reportOfRows(kFigureRows).findings.verdict,
-        "Of the paper's cells that are too slow for real time, hashphase computes in real time 5 "
-        "of 5 "
-        "of collision at the same cell size (the paper's grid on this machine 3), 5 of 6 of AI, by "
-        "cells that follow the radius (the paper's grid on this machine 1), 3 of 4 un-optimized "
-        "ones "
-        "of collision and AI, by automatic cells (un-optimized on this machine 1). Figure 14 is "
-        "not "
-        "counted: the paper's times include drawing, and nothing is drawn here; of what is too "
-        "slow "
-        "in it, un-optimized on this machine computes 2 of 2 in real time, and hashphase 2 of 2. "
-        "All "
-        "methods found the same as brute force: yes");
+        asked(report.measured, "SELECT sentence FROM real_time_sentences"),
+        "Slow cells of collision, at the same cell size: hashphase computes 5 of 5 in real time, "
+        "the paper's grid on this machine 3.; "
+        "Slow cells of AI, by cells that follow the radius: hashphase computes 5 of 6 in real "
+        "time, the paper's grid on this machine 1.; "
+        "Slow cells of un-optimized collision and AI, by automatic cells: hashphase computes 3 of "
+        "4 in real time, un-optimized on this machine 1.; "
+        "Figure 14 is not counted: the paper's times include drawing, and nothing is drawn here. "
+        "Of its slow cells un-optimized computes 2 of 2 in real time on this machine, and "
+        "hashphase 2.");
+}
+
+TEST(PaperReport, IsPrintedInLinesThatFitTheTerminalWithAShortVerdict) {
+    PaperReport report = reportOfRows(kFigureRows);
+    for (const auto& [columns, most] : {std::pair{0, 100}, {90, 90}, {300, 100}}) {
+        std::ostringstream out;
+        Console console{out, out, false, ""};
+        console.columns = static_cast<std::size_t>(columns);
+        printReport(report, false, console);
+        std::istringstream lines(out.str());
+        for (std::string line; std::getline(lines, line);) {
+            EXPECT_LE(line.size(), static_cast<std::size_t>(most)) << line;
+        }
+        EXPECT_NE(out.str().find("\nIn real time: 13 of the paper's 15 slow cells."),
+                  std::string::npos);
+    }
 }
 
 TEST(PaperReport, SaysOnWhichGroundHowManyRoam) {

@@ -175,9 +175,10 @@ TEST(StepProfile, IsOnThePageAndNotWhereThereIsNoStep) {
     const TemporaryFolder folder;
     const auto pageOfScene = [&folder](const std::string& scene) {
         const std::string path = folder.file(scene + ".html");
-        const Typed outcome = typed({"compare", "--scene", scene, "--objects", "40", "--frames",
-                                     "8", "--broadphases", "hash,dbvt", "--html", path},
-                                    std::array{compareCommand(broadphaseKinds())});
+        const Typed outcome =
+            typed({"compare", "--scene", scene, "--objects", "40", "--frames", "8", "--broadphases",
+                   "hash,dbvt", "--verbose", "--html", path},
+                  std::array{compareCommand(broadphaseKinds())});
         EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
         return std::pair(outcome.out, readFile(path));
     };
