@@ -220,7 +220,7 @@ void printReport(const AccuracyReport& report, bool isVerbose, const Console& co
     for (const Outcome& outcome : report.outcomes) {
         printOutcome(outcome, isVerbose, console);
     }
-    printAdvice(adviceTable(allChoices(report)), console);
+    printAdvice(adviceForPeople(report), console);
     printProvenance(report.provenance, console);
     printVerdict(verdictLine(report), console);
     printSentences(brokenChecks(report), console);
