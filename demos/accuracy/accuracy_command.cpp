@@ -6,7 +6,7 @@
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/report/stopwatch.hpp>
+#include <demos/report/time_limit.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/system/process.hpp>
 
@@ -56,6 +56,8 @@ void declare(CLI::App& app, AccuracyOptions& options) {
 Findings findingsOf(const Experiment& experiment, const Effort& effort, const TellProgress& tell) {
     try {
         return experiment.run(effort, tell);
+    } catch (const Interrupted&) {
+        throw;
     } catch (const std::exception& error) {
         Findings findings;
         findings.checks.push_back({"The experiment comes to its end", false, error.what()});
@@ -76,22 +78,27 @@ void run(const Experiments& chosen, const AccuracyOptions& options, AccuracyRepo
         total += secondsOf(*each);
     }
     double done = 0;
-    const Stopwatch sinceBegin;
+    const TimeLimit limit(options.timeLimit);
     for (const Experiment* each : chosen) {
-        if (options.timeLimit && sinceBegin.milliseconds() > 1000 * *options.timeLimit) {
+        if (limit.isOver()) {
             report.leftOut.emplace_back(each->id);
             continue;
         }
         const auto tell = [&](double share, std::string_view what) {
+            throwIfInterrupted();
             const double now = done + secondsOf(*each) * std::clamp(share, 0.0, 1.0);
             progress.update(static_cast<std::size_t>(kSteps * now / total),
                             std::string(each->id) + ": " + std::string(what));
         };
-        tell(0, each->title);
         const Stopwatch stopwatch;
-        Findings findings = findingsOf(*each, options.effort, tell);
+        try {
+            tell(0, each->title);
+            Findings findings = findingsOf(*each, options.effort, tell);
+            report.outcomes.push_back({each, std::move(findings), stopwatch.milliseconds() / 1000});
+        } catch (const Interrupted&) {
+            report.leftOut.emplace_back(each->id);
+        }
         done += secondsOf(*each);
-        report.outcomes.push_back({each, std::move(findings), stopwatch.milliseconds() / 1000});
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include <demos/report/frame_clock.hpp>
 #include <demos/scenes/random.hpp>
+#include <demos/system/interruption.hpp>
 
 #include <numeric>
 #include <utility>
@@ -37,6 +38,7 @@ void measureTimes(Measurements& measured, const TimedFrames& timed,
     std::iota(order.begin(), order.end(), std::size_t{0});
     Random random(0x5eed0d01);
     for (int frame = 0; frame < timed.warmUp + timed.frames; ++frame) {
+        throwIfInterrupted();
         begin(frame);
         shuffle(order, random);
         for (const std::size_t i : order) {

@@ -33,7 +33,7 @@ struct Effort {
     }
 };
 
-/// Takes the share that is done, 0 to 1, and what is being done.
+/// Takes the share that is done, 0 to 1, and what is being done. Throws Interrupted.
 using TellProgress = std::function<void(double, std::string_view)>;
 
 struct Experiment {
@@ -117,6 +117,7 @@ struct TimedMethod {
 /// In a fixed order, a method always finds in the processor's caches what the same other one has left
 /// there. Adds the time of each, less what other programs took of the processor meanwhile, on this thread
 /// only: a row with the method's columns, and then "ms".
+/// Throws Interrupted.
 void measureTimes(Measurements& measured, const TimedFrames& timed,
                   const std::function<void(int frame)>& begin,
                   std::span<const TimedMethod> methods);

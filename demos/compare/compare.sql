@@ -153,7 +153,7 @@ UNION ALL
 SELECT 0, 'This Bullet was built without profile zones: what the rest of a step costs cannot be told.'
 WHERE EXISTS (SELECT 1 FROM steps) AND NOT EXISTS (SELECT 1 FROM zones)
 UNION ALL
-SELECT 0, 'The time limit left no time to tell what the rest of a step costs.'
+SELECT 0, 'No time was left to tell what the rest of a step costs.'
 WHERE EXISTS (SELECT 1 FROM timed WHERE step IS NOT NULL) AND NOT EXISTS (SELECT 1 FROM steps);
 
 -- --- On the terminal ------------------------------------------------------------------------------
@@ -164,10 +164,11 @@ UNION ALL
 SELECT thousands(objects) || ' ' || noun || ', ' || frames_done || ' frames (the first ' || warm_up
        || ' verified, not timed), seed ' || seed FROM run;
 
+/* {"rows": "stopped"} */
+SELECT stopped || ' after ' || frames_done || ' of ' || frames_asked || ' frames.'
+FROM run WHERE stopped IS NOT NULL;
+
 /* {"rows": "left out"} */
-SELECT 'The time limit of ' || time_limit || ' s was reached after ' || frames_done || ' of '
-       || frames_asked || ' frames.' FROM run WHERE limit_hit
-UNION ALL
 SELECT left_out_sentence FROM results WHERE left_out_after IS NOT NULL;
 
 /* {"rows": "short explanation"} */
@@ -221,10 +222,6 @@ SELECT text FROM step_sentences WHERE NOT is_of_table;
 SELECT part AS "part of a step", name, cell FROM step_table;
 
 -- --- On the page ----------------------------------------------------------------------------------
-
-/* {"rows": "time limit"} */
-SELECT 'The time limit was reached after ' || frames_done || ' of ' || frames_asked || ' frames.'
-FROM run WHERE limit_hit;
 
 /* {"sentences": "what is counted", "section": "Are the pairs right?"} */
 SELECT 'The scene: ' || description || '.' FROM run
@@ -315,7 +312,7 @@ FROM run;
 
 /* {"rows": "end"} */
 SELECT text, exact AS "exact?", frames_done AS framesDone, removed AS objectsRemoved,
-       limit_hit AS "timeLimitHit?"
+       stopped IS NOT NULL AND NOT interrupted AS "timeLimitHit?", interrupted AS "interrupted?"
 FROM verdict, exactness, run;
 
 /* {"rows": "broadphases"} */

@@ -164,7 +164,10 @@ std::optional<ReplayRecording> replayFor(const CompareOptions& options, const Op
 OpenedTrial open(const CompareOptions& options, Console& console) {
     Progress progress(console.err, progressStyle(console, options.quiet),
                       "opening " + (options.file.empty() ? options.scene : options.file), 1);
-    return openTrial(options, [&progress](std::string_view what) { progress.update(0, what); });
+    return openTrial(options, [&progress](std::string_view what) {
+        progress.update(0, what);
+        throwIfInterrupted();
+    });
 }
 
 int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> kinds,
@@ -197,10 +200,11 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     const std::size_t objects = opened.trial->facts.objects;
     const ComparisonEnd end = runFrames(*opened.trial, settings, contestants,
                                         report.replay ? &*report.replay : nullptr, measured);
-    if (std::unique_ptr<Trial> profiled = opened.trial->profiled()) {
+    if (std::unique_ptr<Trial> profiled = limit.isOver() ? nullptr : opened.trial->profiled()) {
         opened.trial = nullptr;  // makes room for the same worlds again
         profileSteps(*profiled, settings, end, contestants, measured);
     }
+    const bool isStopped = end.framesDone < frames || isInterrupted();
     measured.add("run",
                  {{"scene", opened.name},
                   {"description", opened.description},
@@ -214,7 +218,8 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
                   {"seed", options.sceneSeed()},
                   {"reference", options.reference == ReferenceMethod::kBrute ? "brute" : "sweep"},
                   {"time_limit", options.timeLimit},
-                  {"limit_hit", end.timeLimitHit}});
+                  {"interrupted", isInterrupted()},
+                  {"stopped", isStopped ? Datum(limit.reason()) : Datum()}});
     report.framesDone = end.framesDone;
     report.wasAnythingTimed = end.framesDone > end.warmUpFrames;
     report.findings = compareFindings(measured);

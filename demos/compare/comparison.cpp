@@ -86,10 +86,10 @@ Contestant fill(Trial& trial, const BroadphaseKind& kind, double seconds,
     contestant.kind = &kind;
     contestant.fillMs = trial.add(kind, [&](std::size_t filled) {
         progress.update(filled);
-        return watch.milliseconds() <= seconds * 1000;
+        return watch.milliseconds() <= seconds * 1000 && !isInterrupted();
     });
     if (!contestant.fillMs) {
-        contestant.leftOutAfter = seconds;
+        contestant.leftOutAfter = std::min(seconds, watch.milliseconds() / 1000);
     }
     return contestant;
 }
@@ -160,7 +160,6 @@ ComparisonEnd runFrames(Trial& trial, const ComparisonSettings& settings,
 
     for (std::size_t frame = 0; frame < frames; ++frame) {
         if (contestants.empty() || settings.limit.isOver()) {
-            end.timeLimitHit = true;
             break;
         }
         const auto tell = [&](std::size_t turn, std::string_view what) {

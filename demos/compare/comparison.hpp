@@ -8,31 +8,12 @@
 #include <demos/console/progress.hpp>
 #include <demos/experiment/measurements.hpp>
 #include <demos/replay/replay_recording.hpp>
-#include <demos/report/stopwatch.hpp>
+#include <demos/report/time_limit.hpp>
 
-#include <algorithm>
-#include <limits>
 #include <optional>
 #include <vector>
 
 namespace hashphase::demos {
-
-/// The time that a command may take, from its creation on: so many seconds, or as long as it takes.
-class TimeLimit {
-public:
-    explicit TimeLimit(std::optional<double> seconds)
-        : seconds_(seconds.value_or(std::numeric_limits<double>::infinity())) {}
-
-    /// Seconds until it is over; not below 0, and infinite without a limit.
-    [[nodiscard]] double secondsLeft() const {
-        return std::max(seconds_ - watch_.milliseconds() / 1000, 0.0);
-    }
-    [[nodiscard]] bool isOver() const { return secondsLeft() <= 0; }
-
-private:
-    double seconds_;
-    Stopwatch watch_;
-};
 
 /// A broadphase that was asked for.
 struct Contestant {
@@ -55,7 +36,6 @@ struct ComparisonEnd {
     int warmUpFrames = 0;  // verified, but not timed
     int framesDone = 0;
     std::size_t objectsRemoved = 0;  // at last, of each
-    bool timeLimitHit = false;
 };
 
 /// Fills all the broadphases, within half of the time that is left, of which each has an even share;

@@ -34,6 +34,7 @@ void printReport(const CompareReport& report, bool isVerbose, const Console& con
     };
     print("setting");
     printProvenance(report.provenance, console);
+    print("stopped");
     print("left out");
     console.out << '\n';
     print(isVerbose ? "explanation" : "short explanation");
@@ -84,7 +85,7 @@ Page pageOf(const CompareReport& report) {
               findings.holds,
               findings.sections,
               report.provenance};
-    for (const std::string& sentence : sentencesOf(findings.rows.at("time limit"))) {
+    for (const std::string& sentence : sentencesOf(findings.rows.at("stopped"))) {
         page.verdict += " " + sentence;
     }
     DataTable& times = page.sections.at(1).tables.at(0);

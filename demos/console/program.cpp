@@ -4,6 +4,7 @@
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/interruption.hpp>
 #include <demos/system/process.hpp>
 
 #include <broadphase/core/compiler.hpp>
@@ -88,18 +89,28 @@ std::optional<int> parse(CLI::App& app, const std::vector<std::string>& argument
     return std::nullopt;
 }
 
-int runGuarded(const Subcommand& command, const CLI::App& parsed, Console& console) {
-    if (const std::string fault = pathClash(parsed); !fault.empty()) {
-        return refuse(console, fault);
-    }
-    warnOfSlowBuild(console);
+int runGuarded(const Subcommand& command, Console& console) {
     try {
         return command.run(console);
     } catch (const InputError& error) {
         return refuse(console, error.what());
     } catch (const std::bad_alloc&) {
         return refuse(console, "there is not enough memory for so large a scene.");
+    } catch (const Interrupted&) {
+        return kExitCheckFailed;  // before there was anything to show
     }
+}
+
+int runUnlessInterrupted(const Subcommand& command, Console& console) {
+    using enum NotedSignals::Next;
+    const NotedSignals signals(command.endsAtSecondSignal ? endsProcess : isNoted);
+    const int exitCode = finish(console, runGuarded(command, console));
+    if (!isInterrupted()) {
+        return exitCode;
+    }
+    console.err << "hashphase: the run was interrupted.\n";
+    constexpr int kExitInterrupted = 128;  // and the signal, as shells have it
+    return kExitInterrupted + notedSignal();
 }
 
 std::string versionText() {
@@ -120,12 +131,16 @@ int runSingleCommand(std::vector<std::string> arguments, const Subcommand& comma
         console.rest = takeRest(arguments);
     }
     if (const std::optional<int> ended = parse(app, arguments, console)) {
-        return *ended;
+        return finish(console, *ended);
     }
     if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) {
         return refuse(console, unknownWordSentence(app, command, extras.front()));
     }
-    return runGuarded(command, app, console);
+    if (const std::string fault = pathClash(app); !fault.empty()) {
+        return refuse(console, fault);
+    }
+    warnOfSlowBuild(console);
+    return runUnlessInterrupted(command, console);
 }
 
 int runMain(int argc, char** argv, Subcommand command) {

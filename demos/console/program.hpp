@@ -4,8 +4,10 @@
 // The command lines of `hashphase` and of its subcommands, each of which is a program of its own, as git's are:
 // `hashphase compare` is hashphase-compare.
 //
-// Exit codes  0 all well, 1 a check failed, 2 wrong usage or bad input.
-// Output      results go to `out`; progress, warnings and errors to `err`.
+// Exit codes    0 all well, 1 a check failed, 2 wrong usage, bad input, or results that could not be written,
+//               128 + n interrupted by signal n.
+// Output        results go to `out`; progress, warnings and errors to `err`.
+// Interruption  a signal such as Ctrl-C ends a command as its time limit does (interruption.hpp).
 
 #include <cstddef>
 #include <functional>
@@ -45,6 +47,9 @@ struct Console {
 /// Says what is wrong, and returns kExitUsage.
 int refuse(Console& console, const std::string& sentence);
 
+/// Flushes the results. Returns the exit code, or kExitUsage after a sentence if not all of them could be written.
+int finish(Console& console, int exitCode);
+
 /// The version of hashphase that this program was built from.
 [[nodiscard]] const char* programVersion() noexcept;
 
@@ -57,10 +62,11 @@ struct Subcommand {
     /// Declares the options, bound to storage that the subcommand owns.
     std::function<void(CLI::App&)> declareOptions;
 
-    /// Runs with the options as parsed; returns the exit code. May throw InputError.
+    /// Runs with the options as parsed; returns the exit code. May throw InputError, and Interrupted.
     std::function<int(Console&)> run;
 
-    bool takesRest = false;  // words that follow the first `--`, as Console::rest
+    bool takesRest = false;          // words that follow the first `--`, as Console::rest
+    bool endsAtSecondSignal = true;  // at once; else it ends itself, however many there are
 };
 
 /// What `hashphase --help` says of the subcommand of that name, which there must be.
@@ -74,8 +80,8 @@ template <class Options, class Declare, class Run>
             [=](Console& console) { return run(*options, console); }};
 }
 
-/// Parses the arguments, runs the command and returns its exit code; `command.name` is what the user types
-/// to run it. Unknown words are told together with what was probably meant.
+/// Parses the arguments, runs the command and returns its exit code, or 128 + n after signal n; `command.name` is
+/// what the user types to run it. Unknown words are told together with what was probably meant.
 int runSingleCommand(std::vector<std::string> arguments, const Subcommand& command,
                      Console console);
 

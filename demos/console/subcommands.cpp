@@ -62,6 +62,17 @@ int refuse(Console& console, const std::string& sentence) {
     return kExitUsage;
 }
 
+int finish(Console& console, int exitCode) {
+    console.out.flush();
+    if (console.out || exitCode == kExitUsage) {
+        return exitCode;
+    }
+    return refuse(
+        console,
+        "the standard output cannot be written to its end, so results are lost; is the disk "
+        "full?");
+}
+
 const char* programVersion() noexcept {
 #ifdef HASHPHASE_VERSION
     return HASHPHASE_VERSION;
@@ -87,11 +98,11 @@ int startSubcommand(const std::vector<std::string>& arguments, Console& console,
     const std::string& first = arguments.front();
     if (first == "-h" || first == "--help") {
         writeHelp(console.out);
-        return kExitOk;
+        return finish(console, kExitOk);
     }
     if (first == "--version") {
         console.out << "hashphase " << programVersion() << '\n';
-        return kExitOk;
+        return finish(console, kExitOk);
     }
     if (first.starts_with('-')) {
         return refuse(

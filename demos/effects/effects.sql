@@ -126,7 +126,7 @@ FROM (SELECT ifnull(sum(differs), 0) AS differences, count(effect) AS comparison
 
 CREATE VIEW texts AS
 SELECT scene || ': ' || thousands(objects) || ' bodies, ' || effects AS scene, thousands(frames) AS frames,
-       limit_hit
+       stopped
 FROM run, variants WHERE variants.rowid = 1;
 
 /* {"verdict": "all"} */
@@ -153,7 +153,7 @@ UNION ALL SELECT '';
 
 /* {"rows": "end of the run"} */
 SELECT iif(holds, 'holds   ', 'BROKEN  ') || claim || ' (' || evidence || ')' FROM checks
-UNION ALL SELECT 'The time limit was reached.' FROM run WHERE limit_hit;
+UNION ALL SELECT stopped || ' after ' || frames || ' frames.' FROM run WHERE stopped IS NOT NULL;
 
 -- --- On the page ----------------------------------------------------------------------------------
 
@@ -164,7 +164,7 @@ SELECT 'Alone: a scene of the effect and those that it needs, minus a scene of t
 UNION ALL SELECT sentence FROM below_zero;
 
 /* {"conclusions": "time limit", "section": "The price list"} */
-SELECT 'The time limit was reached after ' || frames || ' frames.' FROM texts WHERE limit_hit;
+SELECT stopped || ' after ' || frames || ' frames.' FROM texts WHERE stopped IS NOT NULL;
 
 /* {"checks": "all", "section": "The price list"} */
 SELECT claim, holds, evidence FROM checks;
@@ -230,5 +230,6 @@ SELECT list AS "effects{}", member, number FROM figures JOIN variants ON variant
 ORDER BY figures.rowid;
 
 /* {"rows": "end"} */
-SELECT frames, limit_hit AS "timeLimitHit?" FROM run;
+SELECT frames, stopped IS NOT NULL AND NOT interrupted AS "timeLimitHit?", interrupted AS "interrupted?"
+FROM run;
 )sql"

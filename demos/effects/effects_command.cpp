@@ -9,7 +9,6 @@
 #include <demos/effects/effects_prices.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
-#include <demos/report/stopwatch.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <CLI/CLI.hpp>
@@ -94,10 +93,7 @@ void printList(std::ostream& out) {
 
 Measurements measure(const EffectsFile& file, PricingSettings settings,
                      const EffectsOptions& options, Console& console) {
-    const Stopwatch watch;
-    settings.isTimeUp = [&] {
-        return options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit;
-    };
+    settings.limit = TimeLimit(options.timeLimit);
     Progress progress(console.err, progressStyle(console, options.quiet), "effects",
                       pricingSteps(file, settings));
     settings.tellProgress = [&](std::size_t done, std::string_view what) {

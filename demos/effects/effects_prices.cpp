@@ -67,6 +67,7 @@ public:
           costs_(sets_.size()),
           probe_(file.scene) {
         for (const EffectSet effects : sets_) {
+            throwIfInterrupted();
             worlds_.push_back(
                 std::make_unique<EffectsWorld>(file.scene, onlyThese(file.effects, effects)));
             measured_.add("variants", {{"effects", namesOf(effects)}, {"list", jsonOf(effects)}});
@@ -76,10 +77,10 @@ public:
 
     Measurements run() {
         const std::uint32_t all = settings_.warmUpFrames + settings_.frames;
-        bool isLimitHit = false;
-        for (std::uint32_t frame = 0; frame < all && !isLimitHit; ++frame) {
-            isLimitHit = frames_ > 0 && settings_.isTimeUp();
-            if (!isLimitHit) {
+        bool isStopped = false;
+        for (std::uint32_t frame = 0; frame < all && !isStopped; ++frame) {
+            isStopped = frames_ > 0 && settings_.limit.isOver();
+            if (!isStopped) {
                 runFrame(frame);
             }
         }
@@ -88,7 +89,8 @@ public:
         measured_.add("run", {{"scene", settings_.scene},
                               {"objects", file_.scene.objects},
                               {"frames", frames_},
-                              {"limit_hit", isLimitHit}});
+                              {"interrupted", isInterrupted()},
+                              {"stopped", isStopped ? Datum(settings_.limit.reason()) : Datum()}});
         return std::move(measured_);
     }
 
@@ -99,6 +101,9 @@ private:
         for (std::size_t turn = 0; turn < count; ++turn) {
             const std::size_t i = (turn + frame) % count;
             settings_.tellProgress(frame * count + turn, namesOf(sets_[i]));
+            if (frames_ == 0) {
+                throwIfInterrupted();
+            }
             EffectsWorld& world = *worlds_[i];
             world.beginFrame(frame);
             const std::size_t allocations = allocationCount();

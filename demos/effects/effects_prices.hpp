@@ -9,6 +9,7 @@
 
 #include <demos/effects/effects_world.hpp>
 #include <demos/experiment/findings.hpp>
+#include <demos/report/time_limit.hpp>
 
 #include <functional>
 #include <string>
@@ -20,13 +21,13 @@ struct PricingSettings {
     std::string scene;           // its name
     std::uint32_t frames = 120;  // measured
     std::uint32_t warmUpFrames = 10;
-    std::function<bool()> isTimeUp = [] { return false; };
+    TimeLimit limit{std::nullopt};  // beyond it no frame begins, but one is measured at least
     std::function<void(std::size_t done, std::string_view what)> tellProgress =
         [](std::size_t, std::string_view) {};
     std::size_t (*allocationCount)() = nullptr;  // where the program counts them
 };
 
-/// What was measured, as rows that effects.sql names.
+/// What was measured, as rows that effects.sql names. Throws Interrupted before the first frame is measured.
 [[nodiscard]] Measurements priceEffects(const EffectsFile& file, const PricingSettings& settings);
 
 /// How many steps it tells of.

@@ -5,7 +5,7 @@
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
 #include <demos/paper/paper.hpp>
-#include <demos/report/stopwatch.hpp>
+#include <demos/report/time_limit.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -53,13 +53,11 @@ int runPaper(const PaperOptions& options, Console& console) {
     ResultFile html(options.htmlFile);
     Provenance provenance = gatherProvenance(console.commandLine);
     const auto measure = [&] {
-        const Stopwatch watch;
+        const TimeLimit limit(options.timeLimit);
         Progress progress(console.err, progressStyle(console, options.quiet), "paper",
                           paperSteps(plan));
         PaperWatch watcher;
-        watcher.isTimeUp = [&] {
-            return options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit;
-        };
+        watcher.isTimeUp = [&limit] { return limit.isOver(); };
         watcher.tellProgress = [&](std::size_t done, std::string_view what) {
             progress.update(done, what);
         };

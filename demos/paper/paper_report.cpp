@@ -4,6 +4,7 @@
 #include <demos/console/columns.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
+#include <demos/system/interruption.hpp>
 
 #include <ostream>
 #include <utility>
@@ -92,6 +93,9 @@ void printReport(PaperReport& report, bool showMilliseconds, const Console& cons
         "SELECT CASE holds WHEN 1 THEN 'holds' WHEN 0 THEN 'BROKEN' ELSE 'not checked' END || ': ' "
         "|| claim || ' (' || evidence || ')' FROM claims");
     printProvenance(report.provenance, console);
+    if (isInterrupted()) {
+        printSentences({interruptionText()}, console);
+    }
     out << '\n';
     printVerdict(report.findings.verdict, console);
     print("SELECT sentence FROM real_time_sentences");
@@ -133,7 +137,7 @@ Page pageOf(const PaperReport& report) {
     const Findings& findings = report.findings;
     return {"The paper's figures, then and today",
             kPaperIntroduction,
-            findings.verdict + ".",
+            findings.verdict + "." + (isInterrupted() ? " " + interruptionText() : ""),
             findings.holds,
             findings.sections,
             report.provenance};

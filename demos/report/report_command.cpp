@@ -5,7 +5,7 @@
 #include <demos/console/options.hpp>
 #include <demos/report/page.hpp>
 #include <demos/report/report_text.hpp>
-#include <demos/report/stopwatch.hpp>
+#include <demos/report/time_limit.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -79,18 +79,17 @@ private:
         for (std::size_t i = index; i < parts_.size(); ++i) {
             toCome += expected(parts_[i]);
         }
-        const double left = *options_.timeLimit - watch_.milliseconds() / 1000;
-        return left * expected(parts_[index]) / toCome;
+        return limit_.secondsLeft() * expected(parts_[index]) / toCome;
     }
 
     void runPart(std::size_t index) {
         const ReportPart& part = *parts_[index];
         const std::string& name = part.command.name;
-        const std::optional<double> seconds = secondsFor(index);
-        if (seconds && *seconds <= 0) {
+        if (limit_.isOver()) {
             leftOut_.push_back(name);
             return;
         }
+        const std::optional<double> seconds = secondsFor(index);
         if (!options_.quiet) {
             console_.err << "part " << index + 1 << " of " << parts_.size() << ": " << name << '\n';
         }
@@ -103,7 +102,12 @@ private:
             arguments.insert(arguments.end(), {"--time-limit", fixed(std::max(*seconds, 0.1), 1)});
         }
         const Stopwatch watch;
-        page_.parts.push_back(pageOfPart(part, arguments));
+        try {
+            page_.parts.push_back(pageOfPart(part, arguments));
+        } catch (const Interrupted&) {
+            leftOut_.push_back(name);
+            return;
+        }
         const Page& done = page_.parts.back();
         const std::string evidence = name + ", " + fixed(watch.milliseconds() / 1000, 0) + " s";
         if (done.holds) {
@@ -119,7 +123,7 @@ private:
         console_.out << std::flush;
     }
 
-    // A part that cannot go on has not shown what it was to show.
+    // A part that cannot go on has not shown what it was to show. Throws Interrupted.
     [[nodiscard]] Page pageOfPart(const ReportPart& part, const std::vector<std::string>& options) {
         std::ostream nowhere(nullptr);
         Page page{part.command.name, "", "It made no page.", false, {}, {}};
@@ -139,9 +143,11 @@ private:
         }
         try {
             app.parse(std::move(arguments));
-            if (part.command.run(console) != kExitOk) {
+            if (part.command.run(console) != kExitOk && !isInterrupted()) {
                 page.holds = false;
             }
+        } catch (const Interrupted&) {
+            throw;
         } catch (const std::exception& error) {
             page.holds = false;
             page.verdict = std::string("It failed: ") + error.what();
@@ -169,7 +175,7 @@ private:
     std::vector<const ReportPart*> parts_;
     const ReportOptions& options_;
     Console& console_;
-    Stopwatch watch_;
+    TimeLimit limit_{options_.timeLimit};
     Page page_;
     PageSection inShort_;                  // the verdict of each part
     std::vector<std::string> notChecked_;  // ran, but had no time to check anything

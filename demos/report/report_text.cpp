@@ -4,6 +4,7 @@
 #include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/program.hpp>
+#include <demos/system/interruption.hpp>
 
 #include <algorithm>
 #include <ostream>
@@ -41,7 +42,12 @@ std::string namesText(const std::string& opening, const std::vector<std::string>
 }
 
 std::string leftOutText(const std::vector<std::string>& names) {
-    return namesText("; left out for want of time: ", names);
+    return isInterrupted() ? "; interrupted" + namesText(", which left out ", names)
+                           : namesText("; left out for want of time: ", names);
+}
+
+std::string interruptionText() {
+    return isInterrupted() ? "The run was interrupted: what it measured until then is here." : "";
 }
 
 std::string boxText(const Aabb<float>& box) {

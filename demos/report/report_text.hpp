@@ -28,8 +28,11 @@ struct Console;
 [[nodiscard]] std::string namesText(const std::string& opening,
                                     const std::vector<std::string>& names);
 
-/// The same, "; left out for want of time: P9, P10".
+/// The same, "; left out for want of time: P9, P10"; after an interruption "; interrupted, which left out P9, P10".
 [[nodiscard]] std::string leftOutText(const std::vector<std::string>& names);
+
+/// A sentence after an interruption; else empty.
+[[nodiscard]] std::string interruptionText();
 
 /// All of it, a row each.
 [[nodiscard]] DataTable provenanceTable(const Provenance& provenance);

@@ -3,9 +3,12 @@
 
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/interruption.hpp>
 
 #if HASHPHASE_HAS_BULLET_IMPORTER
 #include <BulletWorldImporter/btBulletWorldImporter.h>
+
+#include <csignal>
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -85,6 +88,11 @@ bool survivesImport(const BulletWorldFile& file, const TellWaiting& tell) {
     for (std::chrono::microseconds nap{100}; (ended = waitpid(child, &status, WNOHANG)) == 0;) {
         std::this_thread::sleep_for(nap);
         nap = std::min(2 * nap, std::chrono::microseconds{20'000});
+        if (isInterrupted()) {
+            kill(child, SIGKILL);
+            waitpid(child, &status, 0);
+            throw Interrupted();
+        }
         if (tell) {
             tell("Bullet's importer tries it");
         }

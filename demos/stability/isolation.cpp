@@ -3,6 +3,7 @@
 
 #include <demos/console/format.hpp>
 #include <demos/report/stopwatch.hpp>
+#include <demos/system/interruption.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -94,13 +95,13 @@ CaseOutcome callGuarded(const std::function<CaseOutcome()>& work) {
     _exit(0);
 }
 
-// Waits for the process; false when it had to be killed.
+// Waits for the process; false when it had to be killed, also by an interruption.
 bool waitFor(pid_t child, double wallSeconds, const std::function<void()>& whileWaiting,
              int& status) {
     const Stopwatch watch;
     std::chrono::microseconds nap{50};
     while (waitpid(child, &status, WNOHANG) == 0) {
-        if (watch.milliseconds() > wallSeconds * 1000) {
+        if (watch.milliseconds() > wallSeconds * 1000 || isInterrupted()) {
             kill(child, SIGKILL);
             waitpid(child, &status, 0);
             return false;

@@ -22,7 +22,7 @@ struct IsolationLimits {
 };
 
 /// What work() returns; OutcomeKind::hangs, crashes or, when it throws, wrong, with a note that says
-/// how. `whileWaiting` is called some times a second.
+/// how. `whileWaiting` is called some times a second. An interruption ends the work, and its outcome means nothing.
 [[nodiscard]] CaseOutcome runIsolated(const std::function<CaseOutcome()>& work,
                                       const IsolationLimits& limits,
                                       const std::function<void()>& whileWaiting = {});

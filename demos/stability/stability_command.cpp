@@ -9,7 +9,7 @@
 #include <demos/experiment/findings.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
-#include <demos/report/stopwatch.hpp>
+#include <demos/report/time_limit.hpp>
 #include <demos/stability/bullet_subject.hpp>
 #include <demos/stability/isolation.hpp>
 
@@ -160,13 +160,18 @@ Measurements runCases(const Cases& cases, const Kinds& kinds, const StabilityOpt
     std::size_t done = 0;
     std::vector<std::string> leftOut;
     const Stopwatch sinceBegin;
+    const TimeLimit limit(options.timeLimit);
     for (const HardCase* each : cases) {
-        if (options.timeLimit && sinceBegin.milliseconds() > 1000 * *options.timeLimit) {
+        if (limit.isOver()) {
             leftOut.emplace_back(each->id);
             continue;
         }
         const Stopwatch watch;
+        std::vector<Record> outcomes;
         for (const BroadphaseKind* kind : kinds) {
+            if (isInterrupted()) {
+                break;
+            }
             const std::string what =
                 std::string(each->id) + ": " + each->name + ", " + std::string(kind->name);
             const auto tell = [&] { progress.update(done, what); };
@@ -174,17 +179,24 @@ Measurements runCases(const Cases& cases, const Kinds& kinds, const StabilityOpt
             const double seconds = options.caseSeconds * (kind->ours ? kPatienceWithOurs : 1);
             const CaseOutcome outcome =
                 runIsolated([&] { return runCase(*each, *kind, options); }, {seconds}, tell);
-            measured.add("outcomes", {{"id", each->id},
-                                      {"broadphase", kind->name},
-                                      {"outcome", nameOf(outcome.kind)},
-                                      {"text", outcomeText(outcome)},
-                                      {"holds", holds(outcome)},
-                                      {"compared", outcome.compared},
-                                      {"missing", outcome.missing},
-                                      {"extra", outcome.extra},
-                                      {"cost_ratio", outcome.costRatio},
-                                      {"note", outcome.note}});
+            outcomes.push_back({{"id", each->id},
+                                {"broadphase", kind->name},
+                                {"outcome", nameOf(outcome.kind)},
+                                {"text", outcomeText(outcome)},
+                                {"holds", holds(outcome)},
+                                {"compared", outcome.compared},
+                                {"missing", outcome.missing},
+                                {"extra", outcome.extra},
+                                {"cost_ratio", outcome.costRatio},
+                                {"note", outcome.note}});
             ++done;
+        }
+        if (isInterrupted()) {
+            leftOut.emplace_back(each->id);
+            continue;
+        }
+        for (const Record& outcome : outcomes) {
+            measured.add("outcomes", outcome);
         }
         measured.add("cases", {{"id", each->id},
                                {"name", each->name},
@@ -240,6 +252,7 @@ void writeJson(const Findings& findings, const Provenance& provenance,
                 {"caseTimeLimitSeconds", options.caseSeconds}}}};
     json.update(rowsJson(findings.rows.at("end")).front());
     json["seconds"] = valueJson(measured.ask("SELECT all_seconds FROM run").rows.at(0).at(0));
+    json["interrupted"] = isInterrupted();
     json["leftOut"] = sentencesOf(measured.ask("SELECT id FROM left_out"));
     json["cases"] = std::move(cases);
     out << textOf(json);

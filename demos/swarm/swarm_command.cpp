@@ -11,6 +11,7 @@
 #include <demos/swarm/swarm_files.hpp>
 #include <demos/swarm/swarm_report.hpp>
 #include <demos/swarm/swarm_run.hpp>
+#include <demos/system/interruption.hpp>
 #include <demos/system/process.hpp>
 
 #include <CLI/CLI.hpp>
@@ -109,6 +110,7 @@ int printPlan(const SwarmOptions& options, Console& console) {
     {
         Progress progress(console.err, progressStyle(console, options.quiet), "plan", sizes.size());
         for (const PlanSize& size : sizes) {
+            throwIfInterrupted();
             frames.push_back(planFrame(kind, options.seed, size, model));
             progress.update(frames.size());
         }
@@ -142,6 +144,9 @@ int runUnderMpirun(const SwarmOptions& options, const std::vector<std::string>& 
                              "OMPI_MCA_rmaps_base_oversubscribe"}) {
         setEnvironment(name, "1");
     }
+    // It waits this long [s] before it passes an interruption on to the ranks, and again before it kills them: they
+    // need the time for their frame and their report.
+    setEnvironment("OMPI_MCA_odls_base_sigkill_timeout", "3");
     std::vector<std::string> all{"-n", std::to_string(options.ranks),
                                  programBeside("hashphase-swarm").string()};
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -196,17 +201,19 @@ SwarmResult runAllRanks(const SwarmScene& scene, const SwarmOptions& options, Co
     return result;
 }
 
+// Nothing after an interruption.
 std::optional<SingleResult> runToCompare(const SwarmScene& scene, const SwarmOptions& options,
-                                         Console& console, const MpiSession& mpi) {
-    std::optional<SingleResult> alone;
-    if (!options.unchecked && mpi.rank == 0) {
-        Progress progress(console.err, progressStyle(console, options.quiet), "one process",
-                          options.frames);
-        alone = runAlone(scene, options.frames,
-                         [&](std::uint32_t frame) { progress.update(frame + 1); });
+                                         Console& console) {
+    Progress progress(console.err, progressStyle(console, options.quiet), "one process",
+                      options.frames);
+    try {
+        return runAlone(scene, options.frames, [&](std::uint32_t frame) {
+            progress.update(frame + 1);
+            throwIfInterrupted();
+        });
+    } catch (const Interrupted&) {
+        return std::nullopt;
     }
-    meet(MPI_COMM_WORLD);
-    return alone;
 }
 
 int report(const SwarmResult& result, const std::optional<SingleResult>& alone,
@@ -216,6 +223,10 @@ int report(const SwarmResult& result, const std::optional<SingleResult>& alone,
     printProvenance(provenance, out);
     if (!alone) {
         out << "Not compared with one process.\n";
+        if (result.isInterrupted || isInterrupted()) {
+            out << "The run was interrupted after " << withThousands(result.frames.size())
+                << " frames.\n";
+        }
         return kExitOk;
     }
     const std::string difference = differenceOf(result, *alone);
@@ -238,7 +249,11 @@ int runRank(const SwarmOptions& options, SwarmKind kind, Console& console, const
                     << (mpi.ranks == 1 ? " rank\n" : " ranks\n") << std::flush;
     }
     const SwarmResult result = runAllRanks(scene, options, console, mpi);
-    const auto alone = runToCompare(scene, options, console, mpi);
+    std::optional<SingleResult> alone;
+    if (isFirst && !options.unchecked && !result.isInterrupted) {
+        alone = runToCompare(scene, options, console);
+    }
+    meet(MPI_COMM_WORLD);
     return isFirst ? report(result, alone, provenance, csv, console.out) : kExitOk;
 }
 

@@ -46,13 +46,14 @@ struct SwarmResult {
     std::vector<std::vector<RankFrame>> frames;  // by frame, then rank
     std::vector<FrameSums> sums;                 // by frame, over all ranks; on all of them
     std::vector<bool> wasRebalanced;             // by frame
-    PairSum last;  // the pairs of the last frame, over all ranks; on all of them
+    PairSum last;                // the pairs of the last frame, over all ranks; on all of them
+    bool isInterrupted = false;  // some rank was asked to end; on all of them
 };
 
 /// Called after each frame on every rank.
 using SwarmWatch = std::function<void(std::uint32_t frame, const DistributedGrid<float>& grid)>;
 
-/// Runs frames 0 to `frames` - 1 on all ranks of the communicator together.
+/// Runs frames 0 to `frames` - 1 on all ranks of the communicator together; fewer if one of them is interrupted.
 [[nodiscard]] SwarmResult runSwarm(MPI_Comm communicator, const SwarmScene& scene,
                                    std::uint32_t frames, const DistributedConfig& config,
                                    const SwarmWatch& watch);

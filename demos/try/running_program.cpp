@@ -2,9 +2,11 @@
 #include <demos/try/running_program.hpp>
 
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/interruption.hpp>
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
@@ -23,14 +25,6 @@ namespace hashphase::demos {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-volatile std::sig_atomic_t receivedSignal = 0;
-volatile std::sig_atomic_t isSentByKernel = 0;
-
-void note(int signal, siginfo_t* information, void* /*context*/) {
-    isSentByKernel = information->si_code == SI_KERNEL ? 1 : 0;
-    receivedSignal = signal;
-}
 
 struct ProcessStatus {
     pid_t parent = 0;
@@ -257,33 +251,6 @@ RunEnd endOf(const RunningProgram& program, const tryout::Record& record, bool i
 
 }  // namespace
 
-NotedSignals::NotedSignals() noexcept {
-    receivedSignal = 0;
-    struct sigaction action {};
-    action.sa_flags = SA_SIGINFO;
-    action.sa_sigaction = &note;
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        sigaction(kSignals[i], nullptr, &before_[i]);
-        if (before_[i].sa_handler != SIG_IGN) {
-            sigaction(kSignals[i], &action, nullptr);
-        }
-    }
-}
-
-NotedSignals::~NotedSignals() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) {
-        sigaction(kSignals[i], &before_[i], nullptr);
-    }
-}
-
-int NotedSignals::received() const noexcept {
-    return receivedSignal;
-}
-
-bool NotedSignals::isFromKeyboard() const noexcept {
-    return isSentByKernel != 0;
-}
-
 std::vector<char*> pointersTo(std::vector<std::string>& words) {
     std::vector<char*> pointers;
     for (std::string& word : words) {
@@ -295,7 +262,7 @@ std::vector<char*> pointersTo(std::vector<std::string>& words) {
 
 // Ends the program when it is at a limit or we are asked to: by and by, so that what has started it can clean
 // up behind it.
-RunEnd runToTheEnd(ProgramCall call, const tryout::Record& record, const NotedSignals& signals) {
+RunEnd runToTheEnd(ProgramCall call, const tryout::Record& record) {
     constexpr std::chrono::milliseconds kLook(5);
     constexpr std::chrono::milliseconds kLookInProc(50);
     constexpr std::chrono::seconds kFirstPatience(1);
@@ -313,9 +280,9 @@ RunEnd runToTheEnd(ProgramCall call, const tryout::Record& record, const NotedSi
         } else if (asked && now - *asked > kFirstPatience && !areAllAsked) {
             areAllAsked = true;
             program.send(SIGTERM);
-        } else if (!asked && signals.received() != 0) {
+        } else if (!asked && isInterrupted()) {
             asked = now;
-            program.send(signals.received(), signals.isFromKeyboard());
+            program.send(notedSignal(), isFromKeyboard());
         } else if (!asked && isAtLimit(call, record, now - begin)) {
             asked = now;
             program.sendToRecorded(SIGTERM);
@@ -326,8 +293,7 @@ RunEnd runToTheEnd(ProgramCall call, const tryout::Record& record, const NotedSi
         }
         std::this_thread::sleep_for(program.hasLeft() ? kLookInProc : kLook);
     }
-    const int received = signals.received();
-    return endOf(program, record, asked || received != 0, received);
+    return endOf(program, record, asked || isInterrupted(), notedSignal());
 }
 
 }  // namespace hashphase::demos

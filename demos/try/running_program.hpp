@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A program that is tried, while it runs, and the signals that end it.
+// A program that is tried, while it runs.
 
 #include <demos/try/record.hpp>
 
-#include <array>
-#include <csignal>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -14,26 +12,6 @@
 #include <vector>
 
 namespace hashphase::demos {
-
-/// Notes the signals that would end this process (SIGINT, SIGQUIT, SIGTERM, SIGHUP), for as long as it lives,
-/// but for those that are ignored, as nohup asks. One at a time.
-class NotedSignals {
-public:
-    NotedSignals() noexcept;
-    ~NotedSignals();
-    NotedSignals(const NotedSignals&) = delete;
-    NotedSignals& operator=(const NotedSignals&) = delete;
-
-    /// The last that was received; 0: none.
-    [[nodiscard]] int received() const noexcept;
-
-    /// Whether that has reached all programs of the terminal as well.
-    [[nodiscard]] bool isFromKeyboard() const noexcept;
-
-private:
-    static constexpr std::array kSignals{SIGINT, SIGQUIT, SIGTERM, SIGHUP};
-    std::array<struct sigaction, kSignals.size()> before_{};
-};
 
 /// The words, for a call of the system's; nullptr is the last one.
 [[nodiscard]] std::vector<char*> pointersTo(std::vector<std::string>& words);
@@ -56,9 +34,9 @@ struct RunEnd {
     bool isCrash = false;  // by a signal that nobody here has sent
 };
 
-/// Runs the program, which fills `record`, to its end or to a limit. What `signals` notes ends it, too: at first
-/// it is asked to, some seconds later no longer. Throws InputError when it cannot be started.
-[[nodiscard]] RunEnd runToTheEnd(ProgramCall call, const tryout::Record& record,
-                                 const NotedSignals& signals);
+/// Runs the program, which fills `record`, to its end or to a limit. A signal that this process notes
+/// (interruption.hpp) ends it, too: at first it is asked to, some seconds later no longer. Throws InputError when it
+/// cannot be started.
+[[nodiscard]] RunEnd runToTheEnd(ProgramCall call, const tryout::Record& record);
 
 }  // namespace hashphase::demos

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
@@ -63,12 +62,10 @@ private:
 
     // All of it, now: where there is none, the program would pay for it.
     static bool hasRoom(int file) {
-        const auto before = std::signal(SIGXFSZ, SIG_IGN);  // a limit is an error as any other
         int error = EINTR;
         while (error == EINTR) {
             error = posix_fallocate(file, 0, sizeof(tryout::Record));
         }
-        std::signal(SIGXFSZ, before);
         return error == 0;
     }
 
@@ -133,7 +130,7 @@ ProgramCall callFor(const TriedRunSettings& settings, const std::string& recordP
 
 }  // namespace
 
-TriedRun runTried(const TriedRunSettings& settings, const NotedSignals& signals) {
+TriedRun runTried(const TriedRunSettings& settings) {
     const RecordFile file(settings);
     const tryout::Record& record = file.record();
     const ProgramCall call = callFor(settings, file.path());
@@ -141,7 +138,7 @@ TriedRun runTried(const TriedRunSettings& settings, const NotedSignals& signals)
         lseek(STDIN_FILENO, settings.inputBegin, SEEK_SET);
     }
     TriedRun run;
-    run.end = runToTheEnd(call, record, signals);
+    run.end = runToTheEnd(call, record);
     run.broadphase = settings.broadphase;
     run.isLoaded = record.isLoaded.load() != 0;
     run.counts = record.counts;

@@ -43,6 +43,6 @@ struct TriedRunSettings {
 
 /// Runs the program with this process's streams, of which the input begins where it is told. Throws InputError
 /// when it cannot be started.
-[[nodiscard]] TriedRun runTried(const TriedRunSettings& settings, const NotedSignals& signals);
+[[nodiscard]] TriedRun runTried(const TriedRunSettings& settings);
 
 }  // namespace hashphase::demos

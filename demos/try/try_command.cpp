@@ -5,6 +5,7 @@
 #include <demos/console/options.hpp>
 #include <demos/console/result_file.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/interruption.hpp>
 #include <demos/try/try_report.hpp>
 
 #include <CLI/CLI.hpp>
@@ -136,13 +137,14 @@ std::vector<Broadphase> turnsFor(const TryOptions& options) {
     return turns;
 }
 
-// Until a signal ends them: returns it, or 0. Of a run that it ended before there was a broadphase nothing is
-// known.
-int runAll(const TryOptions& options, Trial& trial, Console& console) {
+// Until a signal ends them. Of a run that it ended before there was a broadphase nothing is known.
+void runAll(const TryOptions& options, Trial& trial, Console& console) {
     TriedRunSettings settings = settingsFor(options, trial.program, console);
     const std::vector<Broadphase> turns = turnsFor(options);
-    const NotedSignals signals;
     for (const Broadphase broadphase : turns) {
+        if (isInterrupted()) {
+            break;
+        }
         settings.broadphase = broadphase;
         if (!options.quiet) {
             console.err << "hashphase try: run " << trial.runs.size() + 1 << " of " << turns.size()
@@ -153,19 +155,18 @@ int runAll(const TryOptions& options, Trial& trial, Console& console) {
                         << std::endl;
         }
         console.out.flush();
-        TriedRun run = runTried(settings, signals);
+        TriedRun run = runTried(settings);
         const bool isEmpty = !run.hasBroadphase();
-        if (isEmpty && signals.received() == 0 && trial.runs.empty()) {
+        if (isEmpty && !isInterrupted() && trial.runs.empty()) {
             refuse(trial.program, run);
         }
-        if (!isEmpty || signals.received() == 0) {
+        if (!isEmpty || !isInterrupted()) {
             trial.runs.push_back(std::move(run));
         }
-        if (isEmpty || signals.received() != 0) {
+        if (isEmpty) {
             break;
         }
     }
-    return signals.received();
 }
 
 int runTry(const TryOptions& options, Console& console) {
@@ -184,18 +185,14 @@ int runTry(const TryOptions& options, Console& console) {
     trial.commandLine = joined(console.rest, " ");
     trial.program = inspectProgram(findProgram(console.rest.front()), bullets, options.precision);
     ResultFile json(options.jsonFile);
-    const int interruption = runAll(options, trial, console);
-    constexpr int kExitInterrupted = 128;  // and the signal, as shells have it
+    runAll(options, trial, console);
     if (trial.runs.empty()) {
-        return kExitInterrupted + interruption;
+        throw Interrupted();
     }
     trial.provenance = gatherProvenance(console.commandLine);
     TrialReport report = reportOf(trial);
     printTrial(report, console.out);
     json.write([&](std::ostream& out) { writeTrialJson(report, out); });
-    if (interruption != 0) {
-        return kExitInterrupted + interruption;
-    }
     return report.findings.holds == true ? kExitOk : kExitCheckFailed;
 }
 
@@ -204,6 +201,7 @@ int runTry(const TryOptions& options, Console& console) {
 Subcommand tryCommand() {
     Subcommand command = makeSubcommand<TryOptions>("try", declare, runTry);
     command.takesRest = true;
+    command.endsAtSecondSignal = false;
     return command;
 }
 

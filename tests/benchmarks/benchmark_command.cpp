@@ -5,7 +5,7 @@
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/report/stopwatch.hpp>
+#include <demos/report/time_limit.hpp>
 #include <demos/scenes/input_error.hpp>
 
 #include <algorithm>
@@ -195,11 +195,11 @@ std::size_t weightOf(const Case& toRun) {
     return toRun.objects * toRun.contestants.size() + 1;
 }
 
-void runCases(const std::vector<Case>& cases, BenchmarkReport& report, demos::Console& console) {
-    const demos::Stopwatch watch;
-    const auto isTimeUp = [&watch, limit = report.options.timeLimit] {
-        return limit && watch.milliseconds() > *limit * 1000;
-    };
+// Returns how many it has run.
+std::size_t runCases(const std::vector<Case>& cases, BenchmarkReport& report,
+                     demos::Console& console) {
+    const demos::TimeLimit limit(report.options.timeLimit);
+    const auto isTimeUp = [&limit] { return limit.isOver(); };
     const auto allFramesOf = [&report](const Case& toRun) {
         return static_cast<std::size_t>(framesOf(toRun, report) + warmUpFramesOf(toRun, report));
     };
@@ -210,7 +210,8 @@ void runCases(const std::vector<Case>& cases, BenchmarkReport& report, demos::Co
     demos::Progress progress(console.err, demos::progressStyle(console, report.options.quiet),
                              "benchmarks", total);
     std::size_t done = 0;
-    for (std::size_t i = 0; i < cases.size() && !isTimeUp(); ++i) {
+    std::size_t i = 0;
+    for (; i < cases.size() && !isTimeUp(); ++i) {
         const std::size_t frames = allFramesOf(cases[i]);
         MeasurementSettings settings = report.settings;
         settings.frames = framesOf(cases[i], report);
@@ -225,8 +226,11 @@ void runCases(const std::vector<Case>& cases, BenchmarkReport& report, demos::Co
         const std::int64_t number = measure(cases[i], settings, report.measured);
         done += weightOf(cases[i]) * frames;
         progress.clear();
+        report.stopped = isTimeUp() ? limit.reason() : "";
         printCase(report, number, console.out);
     }
+    report.stopped = isTimeUp() ? limit.reason() : "";
+    return i;
 }
 
 int runBenchmarks(const BenchmarkOptions& options, const std::vector<ContestantKind>& kinds,
@@ -250,7 +254,11 @@ int runBenchmarks(const BenchmarkOptions& options, const std::vector<ContestantK
     demos::ResultFile json(options.jsonFile);
 
     printSetting(report, kinds, console.out);
-    runCases(cases, report, console);
+    if (runCases(cases, report, console) == 0) {
+        demos::throwIfInterrupted();
+        console.out << report.stopped << " before the first case.\n";
+        return demos::kExitCheckFailed;
+    }
     const bool isExact = printSummary(report, console.out);
     json.write([&report](std::ostream& file) { writeJson(report, file); });
     return isExact ? demos::kExitOk : demos::kExitCheckFailed;

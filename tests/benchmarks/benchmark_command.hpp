@@ -37,6 +37,7 @@ struct BenchmarkReport {
     demos::Provenance provenance;
     demos::Measurements measured;
     std::size_t casesAsked = 0;
+    std::string stopped;  // why not all was measured: "The run was interrupted"
 };
 
 /// On what machine, with which flags and versions, and how to read what follows.

@@ -402,8 +402,9 @@ TEST(Benchmarks, StopAtTheTimeLimitAndSayWhatIsLeftOut) {
     const Outcome outcome = run({"--only", "S2", "--sizes", "100,200", "--frames", "1000000",
                                  "--contestants", "hash", "--time-limit", "0.2"});
     EXPECT_EQ(outcome.exitCode, demos::kExitOk);
-    EXPECT_NE(outcome.out.find("The time limit was reached after "), std::string::npos);
-    EXPECT_NE(outcome.out.find("The time limit left out 1 of 2 cases.\n"), std::string::npos)
+    EXPECT_NE(outcome.out.find("The time limit of 0.2 s was reached after "), std::string::npos);
+    EXPECT_NE(outcome.out.find("The time limit of 0.2 s was reached: 1 of 2 cases are left out.\n"),
+              std::string::npos)
         << outcome.out;
 }
 

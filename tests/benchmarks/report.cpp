@@ -5,6 +5,7 @@
 #include <demos/experiment/findings.hpp>
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
+#include <demos/system/interruption.hpp>
 
 #include <algorithm>
 #include <ostream>
@@ -58,7 +59,7 @@ void printCase(BenchmarkReport& report, std::int64_t number, std::ostream& out) 
     const std::vector<demos::Value>& row = outcome.rows.at(0);
     out << valueText(row[0]) << '\n';
     if (row[3] == demos::Value(1.0)) {
-        out << "The time limit was reached after " << valueText(row[2]) << " frames.\n";
+        out << report.stopped << " after " << valueText(row[2]) << " frames.\n";
     }
     demos::DataTable table = ask(
         "SELECT contestant, \"ms a frame\", ns, \"/ dbvt\", answers, missing, extra, twice, heap, "
@@ -88,8 +89,8 @@ bool printSummary(BenchmarkReport& report, std::ostream& out) {
     }
     const std::size_t done = report.measured.ask("SELECT * FROM cases").rows.size();
     if (done < report.casesAsked) {
-        out << "The time limit left out " << report.casesAsked - done << " of " << report.casesAsked
-            << " cases.\n";
+        out << report.stopped << ": " << report.casesAsked - done << " of " << report.casesAsked
+            << " cases are left out.\n";
     }
     out << findings.verdict << '\n';
     return findings.holds == true;
@@ -117,7 +118,8 @@ void writeJson(BenchmarkReport& report, std::ostream& out) {
               {"verdict",
                {{"oursExact", areExact},
                 {"casesAsked", report.casesAsked},
-                {"casesDone", cases.size()}}}};
+                {"casesDone", cases.size()},
+                {"interrupted", demos::isInterrupted()}}}};
     json["cases"] = std::move(cases);
     out << json.dump(1) << '\n';
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Zlib
 
-// What `hashphase compare` prints.
+// What `hashphase compare` prints, how much it runs, and what is left of it when it is interrupted.
 
 #include <demos/compare/compare_command.hpp>
+#include <demos/scenes/file_bytes.hpp>
+#include <tests/demos/interruptible.hpp>
 #include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
@@ -10,11 +12,36 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
 namespace hashphase::demos {
 namespace {
+
+/// Bullet's brute force, during whose fourth frame somebody presses Ctrl-C.
+class Interrupted4 : public btSimpleBroadphase {
+public:
+    using btSimpleBroadphase::btSimpleBroadphase;
+
+    void calculateOverlappingPairs(btDispatcher* dispatcher) override {
+        btSimpleBroadphase::calculateOverlappingPairs(dispatcher);
+        if (++frame_ == 4) {
+            std::raise(SIGINT);
+        }
+    }
+
+private:
+    int frame_ = 0;
+};
+
+const std::array kInterrupted{
+    BroadphaseKind{"simple", "one for tests", "for tests", true, 1'000'000, true,
+                   [](const BroadphaseNeeds& needs) -> std::unique_ptr<btBroadphaseInterface> {
+                       return std::make_unique<Interrupted4>(static_cast<int>(needs.objects) + 1);
+                   }}};
 
 Typed compared(std::vector<std::string> arguments,
                std::span<const BroadphaseKind> kinds = broadphaseKinds()) {
@@ -82,6 +109,27 @@ TEST(CompareTable, ShowsExtraPairsByTheirShareInTheVerdictToo) {
     EXPECT_TRUE(holds(outcome.out.substr(0, verdict), text.str() + "\n")) << "in the table";
     EXPECT_TRUE(holds(outcome.out.substr(verdict), "; btDbvtBroadphase lists extra pairs: "));
     EXPECT_TRUE(holds(outcome.out.substr(verdict), text.str() + "; pair sets exact in"));
+}
+
+TEST(CompareInterruption, ReportsWhatWasMeasuredUntilThen) {
+    const TemporaryFolder folder;
+    const std::string json = folder.write("r.json", "old");
+    const std::string html = folder.write("r.html", "old");
+    const Typed ended = compared({"--objects", "50", "--frames", "60", "--json", json, "--html",
+                                  html, "--csv", folder.file("r.csv")},
+                                 kInterrupted);
+    EXPECT_EQ(ended.exitCode, 130);
+    EXPECT_TRUE(holds(ended.out, "\nThe run was interrupted after 4 of 60 frames.\n"));
+    EXPECT_TRUE(holds(ended.out, "\nsimple "));
+    EXPECT_TRUE(holds(ended.out, "\n50 spheres, 4 frames; pair sets exact in every frame: yes\n"));
+    const auto report = nlohmann::json::parse(std::ifstream(json));
+    EXPECT_EQ(report["verdict"]["interrupted"], true);
+    EXPECT_EQ(report["verdict"]["timeLimitHit"], false);
+    EXPECT_EQ(report["verdict"]["framesDone"], 4);
+    EXPECT_TRUE(holds(readFile(html), "The run was interrupted after 4 of 60 frames."));
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+        EXPECT_NE(entry.path().extension(), ".partial");
+    }
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(ComparePage, HasNoChartsWhereNothingWasTimed) {
         {"--objects", "2000", "--time-limit", "0.000001", "--broadphases", "hash", "--html", path});
     const std::string page = readFile(path);
     EXPECT_FALSE(holds(page, "id=\"compare-times\""));
-    EXPECT_TRUE(holds(page, "The time limit was reached after 0 of 120 frames."));
+    EXPECT_TRUE(holds(page, "The time limit of 1e-06 s was reached after 0 of 120 frames."));
     EXPECT_FALSE(holds(page, "class=\"verdict bad\"")) << "nothing was wrong";
     EXPECT_FALSE(holds(page, "class=\"verdict\"")) << "nor was it checked";
 }

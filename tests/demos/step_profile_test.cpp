@@ -215,7 +215,8 @@ Measurements measuredRun() {
                          {"seed", 1},
                          {"reference", "sweep"},
                          {"time_limit", {}},
-                         {"limit_hit", 0}});
+                         {"interrupted", 0},
+                         {"stopped", {}}});
     measured.add("broadphases", {{"name", "hash"},
                                  {"title", "hashphase"},
                                  {"ours", 1},
@@ -318,8 +319,7 @@ TEST(StepReport, SaysThatNoTimeWasLeft) {
     const Findings findings = compareFindings(measured);
     EXPECT_TRUE(cellsOf(findings).empty());
     EXPECT_EQ(sentencesOf(findings.rows.at("step sentences")),
-              std::vector<std::string>{
-                  "The time limit left no time to tell what the rest of a step costs."});
+              std::vector<std::string>{"No time was left to tell what the rest of a step costs."});
 }
 
 }  // namespace

@@ -154,7 +154,8 @@ TEST(CompareFindings, LeaveOutWarmUpFramesFromTimesButNotFromCounts) {
                          {"seed", 1},
                          {"reference", "sweep"},
                          {"time_limit", Datum()},
-                         {"limit_hit", false}});
+                         {"interrupted", false},
+                         {"stopped", Datum()}});
     const Findings findings = compareFindings(measured);
     const Json result = rowsJson(findings.rows.at("broadphases")).front();
     EXPECT_EQ(result["bothMs"]["p95"], 3);

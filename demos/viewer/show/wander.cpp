@@ -5,7 +5,8 @@
 #include <demos/console/options.hpp>
 #include <demos/console/progress.hpp>
 #include <demos/console/result_file.hpp>
-#include <demos/report/stopwatch.hpp>
+#include <demos/report/report_text.hpp>
+#include <demos/report/time_limit.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/viewer/draw/headless_context.hpp>
@@ -158,7 +159,7 @@ struct Run {
     bool drewPictures = false;
     bool timeIsOver = false;
     std::optional<double> framesPerSecond;  // shown in a window
-    Stopwatch watch;
+    TimeLimit limit{options.timeLimit};
 };
 
 Run::Run(const WanderOptions& given, Console& said) : options(given), console(said) {
@@ -202,8 +203,7 @@ void Run::feed() {
 }
 
 bool Run::isTimeOver() {
-    timeIsOver =
-        timeIsOver || (options.timeLimit && watch.milliseconds() > 1000 * *options.timeLimit);
+    timeIsOver = timeIsOver || limit.isOver();
     return timeIsOver;
 }
 
@@ -291,6 +291,9 @@ int Run::end() {
     if (framesPerSecond) {
         console.out << fixed(*framesPerSecond, 1)
                     << " frames shown per second, without the first second\n";
+    }
+    if (const std::string interruption = interruptionText(); !interruption.empty()) {
+        console.out << interruption << '\n';
     }
     if (const std::string faults = writeFiles(); !faults.empty()) {
         throw InputError(faults);

@@ -2,20 +2,27 @@
 //
 // `hashphase wander` as it is typed, without a window.
 
+#include <demos/console/format.hpp>
 #include <demos/scenes/file_bytes.hpp>
 #include <demos/viewer/show/wander.hpp>
 #include <demos/viewer/show/window.hpp>
+#include <tests/demos/interruptible.hpp>
 #include <tests/support/temporary_folder.hpp>
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include <unistd.h>
 
 namespace hashphase::demos {
 namespace {
@@ -69,7 +76,7 @@ protected:
     void expectReplayed(const std::string& recording, int frames) const {
         const Outcome again = run("--replay " + recording);
         EXPECT_EQ(again.code, kExitOk);
-        EXPECT_EQ(again.out, "replay: all " + std::to_string(frames) +
+        EXPECT_EQ(again.out, "replay: all " + withThousands(static_cast<std::uint64_t>(frames)) +
                                  " frames are the same, to the last bit\n");
     }
     /// Captured boxes of 40 bodies.
@@ -319,6 +326,25 @@ TEST_F(Wander, NamesEachFileThatCannotBeWrittenAndWritesTheOthers) {
             expectIn(cut.err, file("") + " is a folder, not a file.");
         }
         EXPECT_EQ(json::parse(std::ifstream(file("n.json")))["readings"]["frame"], frames);
+    }
+}
+
+TEST_F(Wander, EndsWithWhatWasPlayedWhenItIsInterrupted) {
+    std::thread presser([path = file("kept.json.partial")] {
+        while (!std::filesystem::exists(path)) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        kill(getpid(), SIGINT);
+    });
+    const Outcome cut = run("--objects 50 --frames 1000000000 --record " + file("kept.json") +
+                            " --json " + file("n.json"));
+    presser.join();
+    EXPECT_EQ(cut.code, 130);
+    expectIn(cut.out, "\nThe run was interrupted: what it measured until then is here.\n");
+    const int frames = json::parse(std::ifstream(file("n.json")))["readings"]["frame"];
+    if (frames > 0) {
+        expectReplayed(file("kept.json"), frames);
     }
 }
 
