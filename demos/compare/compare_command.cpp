@@ -24,6 +24,7 @@ namespace hashphase::demos {
 namespace {
 
 constexpr int kDefaultFrames = 120;
+constexpr int kQuickFrames = 60;
 
 void declare(CLI::App& app, CompareOptions& options) {
     CLI::Option* scene = app.add_option("--scene", options.scene, "built-in scene (see --list)")
@@ -61,6 +62,8 @@ void declare(CLI::App& app, CompareOptions& options) {
         ->transform(wholeFrom(0, 10'000));
     app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
         ->transform(positiveSeconds());
+    app.add_flag("--quick", options.isQuick,
+                 "measure less: at most 10,000 objects and 60 frames, unless you set them");
     app.add_flag("--verbose", options.isVerbose, "print all columns, and the parts of a step");
     app.add_flag("--quiet", options.quiet, "print no progress");
     app.add_flag("--list", options.list, "print the scenes and broadphases, and exit");
@@ -121,7 +124,7 @@ int framesToRun(const CompareOptions& options, const OpenedTrial& opened) {
         throw InputError(opened.name + " holds " + std::to_string(*limit) + " frames, but " +
                          std::to_string(*options.frames) + " were asked for.");
     }
-    const int frames = options.frames.value_or(kDefaultFrames);
+    const int frames = options.frames.value_or(options.isQuick ? kQuickFrames : kDefaultFrames);
     return limit ? std::min(frames, *limit) : frames;
 }
 

@@ -9,17 +9,22 @@
 #include <demos/scenes/text_boxes.hpp>
 #include <demos/scenes/world_scenes.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace hashphase::demos {
 namespace {
 
+constexpr std::size_t kQuickObjects = 10'000;
+
 OpenedTrial openScene(const CompareOptions& options, const TellWaiting& tell) {
     std::vector<std::string> names;
+    const auto objectsOf = [&options](std::size_t usual) {
+        return options.objects.value_or(options.isQuick ? std::min(usual, kQuickObjects) : usual);
+    };
     for (const BoxSceneKind& kind : boxSceneKinds()) {
         if (kind.name == options.scene) {
-            auto scene =
-                kind.make(options.objects.value_or(kind.defaultObjects), options.sceneSeed());
+            auto scene = kind.make(objectsOf(kind.defaultObjects), options.sceneSeed());
             return {std::string(kind.name), std::string(kind.description), std::string(kind.noun),
                     boxTrial(std::move(scene), options.reference)};
         }
@@ -27,7 +32,7 @@ OpenedTrial openScene(const CompareOptions& options, const TellWaiting& tell) {
     }
     for (const WorldSceneKind& kind : worldSceneKinds()) {
         if (kind.name == options.scene) {
-            const std::size_t objects = options.objects.value_or(kind.defaultObjects);
+            const std::size_t objects = objectsOf(kind.defaultObjects);
             auto fill = [fillScene = kind.fill, objects, seed = options.sceneSeed()](
                             WorldContents& contents) { fillScene(contents, objects, seed); };
             return {std::string(kind.name), std::string(kind.description), "bodies",

@@ -23,6 +23,7 @@ struct CompareOptions {
     std::string htmlFile;             // empty: none
     std::optional<int> replayFrames;  // in the page; as many of 120 as leave it small otherwise
     std::optional<double> timeLimit;  // [s]
+    bool isQuick = false;             // fewer objects and frames, unless their numbers are given
     bool isVerbose = false;           // all columns in the table
     bool quiet = false;               // no progress
     bool list = false;                // only say which scenes and broadphases there are

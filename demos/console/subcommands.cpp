@@ -53,6 +53,8 @@ void writeHelp(std::ostream& out) {
     for (const auto& [name, description] : kSubcommands) {
         line(name, description);
     }
+    line("help [SUBCOMMAND]", "Print this help, or the options of a subcommand");
+    line("version", "Print the version");
 }
 
 }  // namespace
@@ -96,11 +98,15 @@ int startSubcommand(const std::vector<std::string>& arguments, Console& console,
         return kExitUsage;
     }
     const std::string& first = arguments.front();
-    if (first == "-h" || first == "--help") {
+    if (first == "help" || first == "-h" || first == "--help") {
+        const std::string of = arguments.size() > 1 ? arguments[1] : first;
+        if (of != "help" && of != "version" && !of.starts_with('-')) {
+            return startSubcommand({of, "--help"}, console, start);
+        }
         writeHelp(console.out);
         return finish(console, kExitOk);
     }
-    if (first == "--version") {
+    if (first == "version" || first == "--version") {
         console.out << "hashphase " << programVersion() << '\n';
         return finish(console, kExitOk);
     }
@@ -113,7 +119,8 @@ int startSubcommand(const std::vector<std::string>& arguments, Console& console,
     for (const Description& each : kSubcommands) {
         names.emplace_back(each.name);
     }
-    if (std::ranges::find(names, first) == names.end()) {
+    names.insert(names.end(), {"help", "version"});
+    if (std::ranges::find(kSubcommands, first, &Description::name) == kSubcommands.end()) {
         return refuse(console, unknownNameSentence("subcommand", first, names));
     }
     return start(first, {arguments.begin() + 1, arguments.end()});

@@ -13,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -29,6 +30,9 @@ constexpr const char* kIntroduction =
     "and what the scene lacks without it. The scene ran with and without each effect, in turn "
     "within each frame.";
 
+constexpr std::uint32_t kQuickObjects = 2'000;
+constexpr std::uint32_t kQuickFrames = 60;
+
 struct EffectsOptions {
     std::string scene = "paper";
     std::string file;  // instead of a scene, where not empty
@@ -39,6 +43,7 @@ struct EffectsOptions {
     std::string csvFile;
     std::string htmlFile;
     std::optional<double> timeLimit;  // [s]
+    bool isQuick = false;             // fewer objects and frames, unless their numbers are given
     bool quiet = false;
     bool list = false;
     bool show = false;    // only write the scene's file
@@ -61,10 +66,13 @@ void declareEffects(CLI::App& app, EffectsOptions& options) {
     addFileToWrite(app, "--html", options.htmlFile, "write a page with charts to this file");
     app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
         ->transform(positiveSeconds());
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
-    app.add_flag("--list", options.list, "say which scenes there are");
-    app.add_flag("--show", options.show, "write the scene as a file, to begin one of yours with");
-    app.add_flag("--schema", options.schema, "write the JSON schema of scene files");
+    app.add_flag("--quick", options.isQuick,
+                 "measure less: at most 2,000 bodies and 60 frames, unless you set them");
+    app.add_flag("--quiet", options.quiet, "print no progress");
+    app.add_flag("--list", options.list, "print the scenes, and exit");
+    app.add_flag("--show", options.show,
+                 "print the scene as a file to start your own with, and exit");
+    app.add_flag("--schema", options.schema, "print the JSON schema of scene files, and exit");
 }
 
 EffectsFile chosenScene(const EffectsOptions& options) {
@@ -140,6 +148,10 @@ int runEffects(const EffectsOptions& options, Console& console, std::size_t (*al
         return kExitOk;
     }
     EffectsFile file = chosenScene(options);
+    if (options.isQuick) {
+        file.scene.objects = std::min(file.scene.objects, kQuickObjects);
+        file.scene.frames = std::min(file.scene.frames, kQuickFrames);
+    }
     file.scene.objects = options.objects.value_or(file.scene.objects);
     file.scene.frames = options.frames.value_or(file.scene.frames);
     file.scene.seed = options.seed.value_or(file.scene.seed);

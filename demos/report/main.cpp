@@ -9,12 +9,10 @@
 
 int main(int argc, char** argv) {
     using namespace hashphase::demos;
-    return runMain(
-        argc, argv,
-        reportCommand(
-            {{compareCommand(), {"--objects", "10000", "--frames", "60"}, 5, 60},
-             {paperCommand(), {"--quick"}, 20, 90},
-             {accuracyCommand(), {"--quick"}, 40, 660},
-             {effectsCommand(kAllocationCount), {"--objects", "2000", "--frames", "60"}, 2, 40},
-             {stabilityCommand(), {"--quick"}, 20, 70}}));
+    return runMain(argc, argv,
+                   reportCommand({{compareCommand(), {"--quick"}, 5, 60},
+                                  {paperCommand(), {"--quick"}, 20, 90},
+                                  {accuracyCommand(), {"--quick"}, 40, 660},
+                                  {effectsCommand(kAllocationCount), {"--quick"}, 2, 40},
+                                  {stabilityCommand(), {"--quick"}, 20, 70}}));
 }

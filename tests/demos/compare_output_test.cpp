@@ -111,6 +111,16 @@ TEST(CompareTable, ShowsExtraPairsByTheirShareInTheVerdictToo) {
     EXPECT_TRUE(holds(outcome.out.substr(verdict), text.str() + "; pair sets exact in"));
 }
 
+TEST(CompareQuick, RunsFewerObjectsAndFramesUnlessTheyAreGiven) {
+    EXPECT_TRUE(holds(compared({"--quick", "--broadphases", "hash", "--frames", "2"}).out,
+                      "\n10,000 spheres, 2 frames"));
+    EXPECT_TRUE(holds(compared({"--quick", "--broadphases", "hash", "--objects", "50"}).out,
+                      "\n50 spheres, 60 frames"));
+    EXPECT_TRUE(holds(
+        compared({"--quick", "--scene", "stack", "--broadphases", "hash", "--frames", "2"}).out,
+        " bodies, 2 frames"));
+}
+
 TEST(CompareInterruption, ReportsWhatWasMeasuredUntilThen) {
     const TemporaryFolder folder;
     const std::string json = folder.write("r.json", "old");

@@ -106,6 +106,16 @@ TEST(EffectsCommand, RunsAFileThatItHasShown) {
     EXPECT_TRUE(has(output.out, "200 bodies, motion, pairs, response, sweep"));
 }
 
+TEST(EffectsCommand, HasFewerBodiesAndFramesInAQuickRunUnlessTheyAreGiven) {
+    const std::string quick = runEffectsCommand({"--quick", "--show"}).out;
+    EXPECT_TRUE(has(quick, "\"objects\": 2000")) << quick;
+    EXPECT_TRUE(has(quick, "\"frames\": 60")) << quick;
+    const std::string given =
+        runEffectsCommand({"--quick", "--show", "--objects", "5000", "--frames", "7"}).out;
+    EXPECT_TRUE(has(given, "\"objects\": 5000")) << given;
+    EXPECT_TRUE(has(given, "\"frames\": 7")) << given;
+}
+
 TEST(EffectsCommand, ListsScenesAndWritesTheSchema) {
     const Typed list = runEffectsCommand({"--list"});
     for (const ExampleScene& each : exampleScenes()) {

@@ -33,6 +33,29 @@ Subcommand doing(std::function<int(Console&)> run) {
     return command;
 }
 
+Typed typedOf(const std::vector<std::string>& arguments) {
+    const Subcommand command = doing([](Console&) { return kExitOk; });
+    return typed(arguments, std::span(&command, 1));
+}
+
+TEST(HelpWords, AreTakenAsTheOptionsAre) {
+    for (const char* word : {"help", "-h", "--help"}) {
+        const Typed general = typedOf({word});
+        EXPECT_EQ(general.exitCode, kExitOk);
+        EXPECT_TRUE(holds(general.out, "Usage: hashphase"));
+        EXPECT_TRUE(holds(general.out, "  help [SUBCOMMAND] "));
+        EXPECT_TRUE(holds(typedOf({word, "compare"}).out, "--sample"));
+        EXPECT_EQ(typedOf({word, "help"}).out, general.out);
+        EXPECT_EQ(typedOf({word, "--help"}).out, general.out);
+    }
+    EXPECT_EQ(typedOf({"version"}).out, typedOf({"--version"}).out);
+    EXPECT_EQ(typedOf({"version"}).exitCode, kExitOk);
+    EXPECT_EQ(typedOf({"help", "comprae"}).err,
+              "hashphase: There is no subcommand 'comprae'; did you mean 'compare'?\n");
+    EXPECT_EQ(typedOf({"hlep"}).err,
+              "hashphase: There is no subcommand 'hlep'; did you mean 'help'?\n");
+}
+
 // --- Results that cannot be written --------------------------------------------------------------
 
 /// A disk that is full.
