@@ -15,14 +15,14 @@ namespace {
 
 using namespace hashphase::demos;
 
-/// Where some programs are not built, the end of the sentence that says so.
+/// What building a program needs, as the end of a sentence.
 std::string needs(const std::string& name) {
     if (name == "hashphase-wander") {
-        return ", where libepoxy-dev, libstb-dev, libimgui-dev and libglfw3-dev (Debian, Ubuntu) "
-               "are installed.";
+        return ", which needs libepoxy-dev, libstb-dev, libimgui-dev and libglfw3-dev (Debian, "
+               "Ubuntu).";
     }
     if (name == "hashphase-swarm") {
-        return ", where an MPI is installed (Debian, Ubuntu: libopenmpi-dev).";
+        return ", which needs an MPI (Debian, Ubuntu: libopenmpi-dev).";
     }
     return ".";
 }
@@ -32,9 +32,9 @@ int become(const std::string& name, std::vector<std::string> arguments, Console&
     const std::filesystem::path path = programBeside(name);
     std::error_code error;
     if (!std::filesystem::exists(path, error)) {
-        return refuse(
-            console,
-            path.string() + " is not there. In the source tree demos/run builds it" + needs(name));
+        return refuse(console, path.string() +
+                                   " is missing. Build it with demos/run in the source tree" +
+                                   needs(name));
     }
     try {
         return runInstead(path, std::move(arguments));

@@ -35,17 +35,17 @@ struct AccuracyOptions {
 
 void declare(CLI::App& app, AccuracyOptions& options) {
     app.add_option("--only", options.only,
-                   "run these experiments, separated by commas (see --list)")
+                   "run only these experiments, separated by commas; --list prints all")
+        ->type_name("ID")
         ->delimiter(',');
     app.add_flag("--quick", options.effort.isQuick,
-                 "measure less: under a minute for all, in place of some ten");
+                 "measure less: under a minute instead of about ten");
     addFolderToWrite(app, "--output", options.folder,
                      "write the report (accuracy.html) and its data (JSON, CSV) to this folder");
     app.add_option("--seed", options.effort.seed, "seed of all random numbers")
         ->transform(seedUpTo())
         ->capture_default_str();
-    app.add_option("--time-limit", options.timeLimit,
-                   "after so many seconds begin no other experiment")
+    app.add_option("--time-limit", options.timeLimit, "begin no experiment after this many seconds")
         ->transform(positiveSeconds());
     app.add_flag("--verbose", options.isVerbose, "print all tables and conclusions");
     app.add_flag("--quiet", options.quiet, "print no progress");
@@ -117,7 +117,8 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
         std::error_code error;
         std::filesystem::create_directories(options.folder, error);
         if (error) {
-            throw InputError(options.folder + " cannot be made: " + error.message() + ".");
+            throw InputError("The folder " + options.folder +
+                             " cannot be made: " + error.message() + ".");
         }
     }
     ResultFile page(options.folder.empty() ? "" : options.folder + "/accuracy.html");

@@ -27,40 +27,45 @@ constexpr int kDefaultFrames = 120;
 constexpr int kQuickFrames = 60;
 
 void declare(CLI::App& app, CompareOptions& options) {
-    CLI::Option* scene = app.add_option("--scene", options.scene, "built-in scene (see --list)")
-                             ->capture_default_str();
+    CLI::Option* scene =
+        app.add_option("--scene", options.scene, "built-in scene; --list prints all")
+            ->type_name("NAME")
+            ->capture_default_str();
     addFileToRead(app, "--file", options.file,
-                  "instead of a scene: a .bullet world, a .aabbs recording (as by 'capture' of "
-                  "hashphase wander), or a text file of boxes")
+                  "read this file instead of a scene: a Bullet world (.bullet), a Broadmark "
+                  "recording (.aabbs), or boxes as text")
         ->excludes(scene);
-    app.add_option("--objects", options.objects, "number of objects (default: the scene's)")
+    app.add_option("--objects", options.objects, "number of objects (default: the scene's own)")
         ->transform(wholeFrom(1, 10'000'000));
     app.add_option("--frames", options.frames, "number of frames, warm-up included (default: 120)")
         ->transform(wholeFrom(1, 1'000'000));
     app.add_option("--broadphases", options.broadphases,
-                   "which to compare, separated by commas (see --list)")
+                   "broadphases to compare, separated by commas; --list prints all")
+        ->type_name("NAME")
         ->delimiter(',');
-    app.add_option("--seed", options.seed, "seed of the scene, or of the boxes' drift (default: 1)")
+    app.add_option("--seed", options.seed,
+                   "seed of the scene, or of how boxes of a file drift (default: 1)")
         ->transform(seedUpTo());
     app.add_option("--reference", options.reference,
-                   "how the exact pairs are found: sweep (along one axis) or brute (all pairs)")
+                   "how to find the exact pairs: sweep (along one axis) or brute (every pair)")
         ->transform(CLI::CheckedTransformer(
                         std::map<std::string, ReferenceMethod>{{"sweep", ReferenceMethod::kSweep},
                                                                {"brute", ReferenceMethod::kBrute}})
                         .description(""))
         ->type_name("sweep|brute");
-    addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
-    addFileToWrite(app, "--csv", options.csvFile, "write the rows of all frames to this file");
+    addFileToWrite(app, "--json", options.jsonFile, "write all results to this file");
+    addFileToWrite(app, "--csv", options.csvFile,
+                   "write a row per frame and broadphase to this file");
     CLI::Option* html =
         addFileToWrite(app, "--html", options.htmlFile,
-                       "write a page with charts to this file; its tab Replay plays the first "
-                       "frames in a browser with WebGL2");
+                       "write a page with charts to this file; its Replay tab plays the first "
+                       "frames, in a browser with WebGL2");
     app.add_option("--replay-frames", options.replayFrames,
-                   "so many frames to be replayed in the page, however large that makes it; 0 for "
-                   "none (default: what keeps it below 6 MB)")
+                   "number of frames that the page can replay; 0: none (default: as many as fit in "
+                   "6 MB)")
         ->needs(html)
         ->transform(wholeFrom(0, 10'000));
-    app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
+    app.add_option("--time-limit", options.timeLimit, "stop after this many seconds")
         ->transform(positiveSeconds());
     app.add_flag("--quick", options.isQuick,
                  "measure less: at most 10,000 objects and 60 frames, unless you set them");
@@ -121,8 +126,8 @@ std::vector<const BroadphaseKind*> defaultKinds(std::span<const BroadphaseKind> 
 int framesToRun(const CompareOptions& options, const OpenedTrial& opened) {
     const std::optional<int> limit = opened.trial->facts.frameLimit;
     if (limit && options.frames && *options.frames > *limit) {
-        throw InputError(opened.name + " holds " + std::to_string(*limit) + " frames, but " +
-                         std::to_string(*options.frames) + " were asked for.");
+        throw InputError(opened.name + " holds " + std::to_string(*limit) +
+                         " frames, but --frames asks for " + std::to_string(*options.frames) + ".");
     }
     const int frames = options.frames.value_or(options.isQuick ? kQuickFrames : kDefaultFrames);
     return limit ? std::min(frames, *limit) : frames;

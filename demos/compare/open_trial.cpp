@@ -47,8 +47,8 @@ OpenedTrial openTextBoxes(const CompareOptions& options, const TellWaiting& tell
     std::vector<Aabb<float>> boxes = readTextBoxes(options.file, tell);
     const std::size_t objects = options.objects.value_or(boxes.size());
     if (objects > boxes.size()) {
-        throw InputError(options.file + " holds " + withThousands(boxes.size()) + " boxes, but " +
-                         withThousands(objects) + " were asked for.");
+        throw InputError(options.file + " holds " + withThousands(boxes.size()) +
+                         " boxes, but --objects asks for " + withThousands(objects) + ".");
     }
     boxes.resize(objects);
     auto scene = std::make_unique<BrownianScene>(driftingBoxes(boxes), options.sceneSeed());
@@ -60,14 +60,13 @@ OpenedTrial openFile(const CompareOptions& options, const TellWaiting& tell) {
     const bool isWorld = hasExtension(options.file, ".bullet");
     const bool isRecording = hasExtension(options.file, ".aabbs");
     if (options.seed && (isWorld || isRecording)) {
-        throw InputError("--seed is for scenes and boxes as text; no seed changes " + options.file +
-                         ".");
+        throw InputError("--seed has no effect on " + options.file + "; leave it out.");
     }
     if (isWorld) {
         if (options.objects) {
             throw InputError(
-                "--objects cannot be chosen for a .bullet file, which is one whole "
-                "world; leave it out.");
+                "--objects has no effect on a .bullet file, which holds a whole world; leave it "
+                "out.");
         }
         auto file = std::make_shared<const BulletWorldFile>(options.file, tell);
         std::string description = "a world serialised by Bullet";

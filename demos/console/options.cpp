@@ -55,6 +55,16 @@ CLI::Option* addPath(CLI::App& app, const std::string& name, std::string& path,
         });
 }
 
+// In the words of people, not of C++.
+void nameType(CLI::Option& option) {
+    const std::string name = option.get_type_name();
+    if (name.starts_with("UINT") || name.starts_with("INT")) {
+        option.type_name("N");
+    } else if (name.starts_with("FLOAT")) {
+        option.type_name("NUMBER");
+    }
+}
+
 bool writes(const CLI::Option& option) {
     return option.get_type_name() == kFileToWrite;
 }
@@ -126,6 +136,7 @@ void checkValues(CLI::App& app) {
         if (option->get_items_expected_max() == 0) {
             continue;  // a flag
         }
+        nameType(*option);
         const bool isList = option->get_delimiter() != '\0';
         // Before all that looks at the value.
         option->transform(CLI::Validator(

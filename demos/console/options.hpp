@@ -40,7 +40,7 @@ CLI::Option* addFolderToWrite(CLI::App& app, const std::string& name, std::strin
                               const std::string& description);
 
 /// To be called when all options are declared: from then on none takes an empty value, and blanks
-/// around the items of a list do not matter.
+/// around the items of a list do not matter. Help names numbers "N" and "NUMBER".
 void checkValues(CLI::App& app);
 
 /// What is wrong with the files of the options that were given: two of them would be written to the

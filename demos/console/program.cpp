@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/program.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/scenes/input_error.hpp>
@@ -16,6 +17,7 @@
 #include <iostream>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 namespace hashphase::demos {
@@ -69,6 +71,15 @@ std::string countSentence(const CLI::ArgumentMismatch& error) {
                                           : ": it is given more than once");
 }
 
+// Descriptions of options continue below each other.
+void printHelp(const CLI::App& app, const Console& console) {
+    std::istringstream lines(app.help());
+    for (std::string line; std::getline(lines, line);) {
+        console.out << wrapped(line, lineWidth(console), line.starts_with("  ") ? kHelpIndent : 0)
+                    << '\n';
+    }
+}
+
 // The exit code where parsing ends the program.
 std::optional<int> parse(CLI::App& app, const std::vector<std::string>& arguments,
                          Console& console) {
@@ -76,7 +87,7 @@ std::optional<int> parse(CLI::App& app, const std::vector<std::string>& argument
         // CLI11 takes the arguments from the back.
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
     } catch (const CLI::CallForHelp&) {
-        console.out << app.help();
+        printHelp(app, console);
         return kExitOk;
     } catch (const CLI::CallForVersion& version) {
         console.out << version.what() << '\n';
@@ -95,7 +106,7 @@ int runGuarded(const Subcommand& command, Console& console) {
     } catch (const InputError& error) {
         return refuse(console, error.what());
     } catch (const std::bad_alloc&) {
-        return refuse(console, "there is not enough memory for so large a scene.");
+        return refuse(console, "there is not enough memory for this scene; ask for fewer objects.");
     } catch (const Interrupted&) {
         return kExitCheckFailed;  // before there was anything to show
     }
@@ -122,7 +133,8 @@ std::string versionText() {
 int runSingleCommand(std::vector<std::string> arguments, const Subcommand& command,
                      Console console) {
     CLI::App app(command.description, command.name);
-    app.set_version_flag("--version", versionText());
+    app.set_help_flag("-h,--help", "Print this help and exit");
+    app.set_version_flag("--version", versionText(), "Print the version and exit");
     // Unknown words are collected rather than refused, so that the right one can be suggested.
     app.allow_extras();
     command.declareOptions(app);

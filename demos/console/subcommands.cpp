@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/program.hpp>
 
+#include <demos/console/columns.hpp>
 #include <demos/console/format.hpp>
 
 #include <algorithm>
@@ -19,36 +20,39 @@ struct Description {
 constexpr std::array kSubcommands{
     Description{
         "compare",
-        "Run a scene with our broadphase and Bullet's; verify the pairs; compare the times"},
-    Description{"paper", "Reproduce the paper's figures 13 to 15: its numbers beside today's"},
+        "Run a scene with hashphase and with Bullet's broadphases: check the pairs, compare "
+        "the times"},
+    Description{"paper",
+                "Measure figures 13 to 15 of the paper again, next to its printed numbers"},
     Description{"accuracy",
-                "Measure what accuracy costs in time: every choice, its error and its ms"},
+                "Measure how much time less accuracy saves: the error and the time of each method"},
     Description{"stability",
-                "Run hard cases with our broadphase and Bullet's; say what each one does"},
-    Description{"effects", "Say what each effect of a scene costs, and what is lost without it"},
+                "Run hard cases with hashphase and with Bullet's broadphases, and report what each "
+                "one does"},
+    Description{"effects",
+                "Measure what each effect of a scene costs, and what the scene loses without it"},
     Description{"report",
-                "Join in one page what these find: compare, paper, accuracy, effects, "
-                "stability"},
+                "Run compare, paper, accuracy, effects and stability, and join their results in a "
+                "page"},
     Description{"try",
-                "Run a program of yours, as it is, with Bullet's broadphase and with ours, "
-                "and compare"},
+                "Run your own Bullet program unchanged, with Bullet's broadphase and with "
+                "hashphase, and compare"},
     Description{"swarm",
-                "Spread a million wandering spheres over the processes of an MPI program; "
-                "verify the pairs"},
-    Description{"wander", "Watch the paper's simulation, and play with it"},
+                "Spread a million moving spheres over the processes of an MPI program, and check "
+                "the pairs"},
+    Description{"wander", "Watch the paper's simulation in a window, and play with it"},
 };
 
-// As CLI11 writes those of the subcommands.
-void writeHelp(std::ostream& out) {
-    const auto line = [&out](std::string_view name, std::string_view description) {
-        constexpr std::size_t width = 28;
-        out << "  " << name << std::string(width - std::min(name.size(), width), ' ') << description
-            << '\n';
+void writeHelp(std::ostream& out, std::size_t columns) {
+    const auto line = [&](std::string_view name, std::string_view description) {
+        std::string text = "  " + std::string(name);
+        text.resize(std::max(text.size() + 1, kHelpIndent), ' ');
+        out << wrapped(text += description, columns, kHelpIndent) << '\n';
     };
-    out << "hashphase: a spatial-hash broadphase for Bullet, shown at work\n"
+    out << "hashphase shows and measures a spatial-hash broadphase for the Bullet physics engine.\n"
            "Usage: hashphase [OPTIONS] [SUBCOMMAND]\n\nOptions:\n";
-    line("-h,--help", "Print this help message and exit");
-    line("--version", "Display program version information and exit");
+    line("-h,--help", "Print this help and exit");
+    line("--version", "Print the version and exit");
     out << "\nSubcommands:\n";
     for (const auto& [name, description] : kSubcommands) {
         line(name, description);
@@ -94,7 +98,7 @@ std::string descriptionOf(std::string_view name) {
 int startSubcommand(const std::vector<std::string>& arguments, Console& console,
                     const std::function<int(const std::string&, std::vector<std::string>)>& start) {
     if (arguments.empty()) {
-        writeHelp(console.err);
+        writeHelp(console.err, lineWidth(console));
         return kExitUsage;
     }
     const std::string& first = arguments.front();
@@ -103,7 +107,7 @@ int startSubcommand(const std::vector<std::string>& arguments, Console& console,
         if (of != "help" && of != "version" && !of.starts_with('-')) {
             return startSubcommand({of, "--help"}, console, start);
         }
-        writeHelp(console.out);
+        writeHelp(console.out, lineWidth(console));
         return finish(console, kExitOk);
     }
     if (first == "version" || first == "--version") {

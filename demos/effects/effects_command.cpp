@@ -51,20 +51,23 @@ struct EffectsOptions {
 };
 
 void declareEffects(CLI::App& app, EffectsOptions& options) {
-    CLI::Option* scene = app.add_option("--scene", options.scene, "built-in scene (see --list)")
-                             ->capture_default_str();
-    addFileToRead(app, "--file", options.file, "instead of a scene: a scene file of yours (JSON)")
+    CLI::Option* scene =
+        app.add_option("--scene", options.scene, "built-in scene; --list prints all")
+            ->type_name("NAME")
+            ->capture_default_str();
+    addFileToRead(app, "--file", options.file, "read this scene file (JSON) instead")
         ->excludes(scene);
-    app.add_option("--objects", options.objects, "number of bodies (default: the scene's)")
+    app.add_option("--objects", options.objects, "number of bodies (default: the scene's own)")
         ->transform(wholeFrom(1, 1'000'000));
-    app.add_option("--frames", options.frames, "number of frames (default: the scene's)")
+    app.add_option("--frames", options.frames, "number of frames (default: the scene's own)")
         ->transform(wholeFrom(1, 1'000'000));
     app.add_option("--seed", options.seed, "seed of the scene")
         ->transform(seedUpTo(std::numeric_limits<std::uint32_t>::max()));
-    addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
-    addFileToWrite(app, "--csv", options.csvFile, "write a row for each variant to this file");
+    addFileToWrite(app, "--json", options.jsonFile, "write all results to this file");
+    addFileToWrite(app, "--csv", options.csvFile,
+                   "write a row per variant of the scene to this file");
     addFileToWrite(app, "--html", options.htmlFile, "write a page with charts to this file");
-    app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
+    app.add_option("--time-limit", options.timeLimit, "stop after this many seconds")
         ->transform(positiveSeconds());
     app.add_flag("--quick", options.isQuick,
                  "measure less: at most 2,000 bodies and 60 frames, unless you set them");

@@ -15,35 +15,34 @@ namespace hashphase::demos {
 namespace {
 
 void declarePaper(CLI::App& app, PaperOptions& options) {
-    app.add_flag("--quick", options.quick,
-                 "measure less: 20 seconds, in place of a minute and a half");
+    app.add_flag("--quick", options.quick, "measure less: 20 seconds instead of 90");
     app.add_option("--objects", options.objects,
-                   "numbers of objects, separated by commas (default: the paper's, 500 to 50,000; "
-                   "the domain of more than 50,000 grows so that they stay as dense)")
+                   "numbers of objects, separated by commas (default: the paper's, 500 to 50,000); "
+                   "above 50,000 the area grows, so that the density stays")
         ->delimiter(',')
         ->transform(wholeFrom(2, 1'000'000));
     app.add_option("--frames", options.frames,
-                   "most frames of each method (default: 60, with --quick 6)")
+                   "most frames per method (default: 60, with --quick 6)")
         ->transform(wholeFrom(1, 100'000));
     app.add_option("--radius", options.aiRadius,
-                   "within which AI counts colours, in metres; the paper does not give it")
+                   "radius in metres in which agents count colours; the paper does not give it")
         ->transform(metresFrom(0, 1000))
         ->capture_default_str();
     app.add_option("--seed", options.seed, "seed of all random numbers")
         ->transform(seedUpTo())
         ->capture_default_str();
-    addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
-    addFileToWrite(app, "--csv", options.csvFile, "write a row for each measurement to this file");
+    addFileToWrite(app, "--json", options.jsonFile, "write all results to this file");
+    addFileToWrite(app, "--csv", options.csvFile, "write a row per measurement to this file");
     addFileToWrite(app, "--html", options.htmlFile,
                    "write a page with tables and charts to this file");
     app.add_option(
            "--time-limit", options.timeLimit,
-           "after so many seconds leave out what is not measured yet; hashphase then runs before "
-           "the rivals")
+           "leave out all that is not measured after this many seconds; hashphase then runs before "
+           "its rivals")
         ->transform(positiveSeconds());
     app.add_flag("--ms", options.showMilliseconds,
-                 "print milliseconds a frame, in place of frames a second");
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+                 "print milliseconds per frame instead of frames per second");
+    app.add_flag("--quiet", options.quiet, "print no progress");
 }
 
 int runPaper(const PaperOptions& options, Console& console) {

@@ -36,17 +36,19 @@ struct ReportOptions {
 
 void declareReport(CLI::App& app, ReportOptions& options) {
     app.add_flag("--quick", options.isQuick,
-                 "measure less: a minute and a half, in place of a quarter of an hour");
-    app.add_option("--only", options.only, "join these parts, separated by commas")->delimiter(',');
+                 "measure less: 90 seconds instead of a quarter of an hour");
+    app.add_option("--only", options.only, "run only these parts, separated by commas")
+        ->type_name("NAME")
+        ->delimiter(',');
     addFileToWrite(app, "--html", options.htmlFile, "write the page to this file")
         ->capture_default_str();
     app.add_option("--seed", options.seed, "seed of all random numbers")
         ->transform(seedUpTo(std::numeric_limits<std::uint32_t>::max()))
         ->capture_default_str();
     app.add_option("--time-limit", options.timeLimit,
-                   "so many seconds for all parts; the page says what was left out")
+                   "seconds for all parts together; the page names what is left out")
         ->transform(positiveSeconds());
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
+    app.add_flag("--quiet", options.quiet, "print no progress");
 }
 
 /// Runs the parts, and joins what they hand in.

@@ -72,10 +72,11 @@ void requireFile(const std::filesystem::path& path) {
         throw InputError(path.string() + " is a folder, not a file.");
     }
     if (!std::filesystem::exists(status)) {
-        throw InputError(path.string() + " cannot be opened for reading.");
+        throw InputError(path.string() + " cannot be read: there is no such file.");
     }
     if (!std::filesystem::is_regular_file(status)) {
-        throw InputError(path.string() + " is a device or a pipe, not a file.");
+        throw InputError(path.string() +
+                         " is a device or a pipe, not a file: save its content to a file first.");
     }
 }
 
@@ -83,14 +84,13 @@ std::string readFile(const std::filesystem::path& path) {
     requireFile(path);
     std::ifstream file(path, std::ios::binary);
     if (!file) {
-        throw InputError(path.string() + " cannot be opened for reading.");
+        throw InputError(path.string() + " cannot be read: you may not open it.");
     }
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (!error && size > kLargestFile) {
-        throw InputError(path.string() + " has " + std::to_string(size) +
-                         " bytes, which is more than the " + std::to_string(kLargestFile) +
-                         " that are read.");
+        throw InputError(path.string() + " has " + withThousands(size) +
+                         " bytes; a file may have at most " + withThousands(kLargestFile) + ".");
     }
     std::string bytes(error ? 0 : static_cast<std::size_t>(size), '\0');
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

@@ -33,12 +33,12 @@ RecordingScene::RecordingScene(const std::filesystem::path& path, std::size_t ob
     requireFile(path);
     file_.open(path, std::ios::binary);
     if (!file_.is_open()) {
-        throw InputError(path_ + " cannot be opened for reading.");
+        throw InputError(path_ + " cannot be read: you may not open it.");
     }
     readHeader();
     if (objects > recordedObjects_) {
-        throw InputError(path_ + " holds " + std::to_string(recordedObjects_) + " objects, but " +
-                         std::to_string(objects) + " were asked for.");
+        throw InputError(path_ + " holds " + std::to_string(recordedObjects_) +
+                         " objects, but --objects asks for " + std::to_string(objects) + ".");
     }
     // The memory is bounded by the file's own size, which readHeader() has compared with the counts.
     const std::size_t played = objects == 0 ? recordedObjects_ : objects;

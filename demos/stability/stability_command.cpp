@@ -53,30 +53,33 @@ using Cases = std::vector<const HardCase*>;
 using Kinds = std::vector<const BroadphaseKind*>;
 
 void declareStability(CLI::App& app, StabilityOptions& options) {
-    app.add_option("--only", options.only, "run these cases, separated by commas (see --list)")
+    app.add_option("--only", options.only,
+                   "run only these cases, separated by commas; --list prints all")
+        ->type_name("ID")
         ->delimiter(',');
     app.add_option("--broadphases", options.broadphases,
-                   "run these broadphases, separated by commas (see --list)")
+                   "run only these broadphases, separated by commas; --list prints all")
+        ->type_name("NAME")
         ->delimiter(',');
-    app.add_flag("--quick", options.isQuick, "run smaller inputs: some seconds for all");
+    app.add_flag("--quick", options.isQuick, "use smaller inputs: some seconds for all cases");
     app.add_flag("--explain", options.isExplained,
-                 "tell of each case what is handed in, what is required, and what each one does");
+                 "print the input of each case, what is required, and what each broadphase does");
     app.add_option("--seed", options.seed, "seed of all random numbers")
         ->transform(seedUpTo())
         ->capture_default_str();
     app.add_option("--case-time-limit", options.caseSeconds,
-                   "seconds of processor time that a broadphase has for a case (ours ten times "
-                   "that)")
+                   "seconds of processor time that a broadphase has for a case; hashphase has ten "
+                   "times as many")
         ->transform(positiveSeconds())
         ->capture_default_str();
-    app.add_option("--time-limit", options.timeLimit, "after so many seconds begin no other case")
+    app.add_option("--time-limit", options.timeLimit, "begin no case after this many seconds")
         ->transform(positiveSeconds());
-    addFileToWrite(app, "--json", options.jsonFile, "write everything found to this file");
+    addFileToWrite(app, "--json", options.jsonFile, "write all results to this file");
     addFileToWrite(app, "--csv", options.csvFile,
-                   "write a row for each case and broadphase to this file");
+                   "write a row per case and broadphase to this file");
     addFileToWrite(app, "--html", options.htmlFile, "write a page with the table to this file");
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
-    app.add_flag("--list", options.list, "say which cases and broadphases there are");
+    app.add_flag("--quiet", options.quiet, "print no progress");
+    app.add_flag("--list", options.list, "print the cases and broadphases, and exit");
 }
 
 void printList(const Cases& cases, const Kinds& kinds, std::ostream& out) {

@@ -48,39 +48,42 @@ struct SwarmOptions {
 };
 
 void declareSwarm(CLI::App& app, SwarmOptions& options) {
-    app.add_option("--scene", options.scene, "population (see --list)")->capture_default_str();
+    app.add_option("--scene", options.scene, "how the spheres are spread; --list prints all ways")
+        ->type_name("NAME")
+        ->capture_default_str();
     app.add_option("--objects", options.objects, "number of spheres")
         ->transform(wholeFrom(10, 4'000'000'000U))
         ->capture_default_str();
     app.add_option("--frames", options.frames, "number of frames")
         ->transform(wholeFrom(1, 1'000'000))
         ->capture_default_str();
-    app.add_option(
-           "--ranks", options.ranks,
-           "start so many processes, by mpirun (default: those that mpirun has started, or one)")
+    app.add_option("--ranks", options.ranks,
+                   "number of processes to start with mpirun (default: the processes that mpirun "
+                   "has started, or one)")
         ->transform(wholeFrom(1, 100'000));
-    app.add_option("--seed", options.seed, "seed of the population")->transform(seedUpTo());
-    app.add_option("--rebalance-above", options.rebalanceAbove,
-                   "cut space again when the most loaded rank has more than this times the mean")
+    app.add_option("--seed", options.seed, "seed of the spheres")->transform(seedUpTo());
+    app.add_option(
+           "--rebalance-above", options.rebalanceAbove,
+           "divide space again when the busiest rank has more than this many times the mean "
+           "load")
         ->check(CLI::Range(1.0, 1e6))
         ->capture_default_str();
     app.add_option("--patience", options.patience,
-                   "give up after waiting for a rank so many seconds")
+                   "give up when a rank does not answer for this many seconds")
         ->transform(positiveSeconds())
         ->capture_default_str();
     addFolderToWrite(app, "--vtk", options.vtkFolder,
                      "write files for ParaView to this folder: open swarm.pvd and regions.pvd");
-    app.add_option("--vtk-every", options.vtkEvery, "write those of every so many frames")
+    app.add_option("--vtk-every", options.vtkEvery, "frames from one file for ParaView to the next")
         ->transform(wholeFrom(1, 1'000'000))
         ->capture_default_str();
-    addFileToWrite(app, "--csv", options.csvFile,
-                   "write a row for each frame and rank to this file");
+    addFileToWrite(app, "--csv", options.csvFile, "write a row per frame and rank to this file");
     app.add_flag("--unchecked", options.unchecked,
-                 "do not run the same in one process to compare pairs and times");
+                 "skip the run in one process, with which pairs and times are compared");
     app.add_flag("--plan", options.plan,
-                 "count what 64 to 16,384 ranks would tell each other, and run nothing");
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
-    app.add_flag("--list", options.list, "say which populations there are");
+                 "print what 64 to 16,384 ranks would send each other, and exit");
+    app.add_flag("--quiet", options.quiet, "print no progress");
+    app.add_flag("--list", options.list, "print the ways to spread spheres, and exit");
 }
 
 SwarmKind chosenKind(const std::string& name) {

@@ -34,8 +34,8 @@ SwarmFiles::SwarmFiles(std::string folder, std::uint32_t rank, float side)
     }
     std::error_code error;
     std::filesystem::create_directories(folder_, error);
-    if (!std::filesystem::is_directory(folder_, error)) {
-        throw InputError(folder_ + " is no folder, and cannot be made one.");
+    if (std::error_code ignored; !std::filesystem::is_directory(folder_, ignored)) {
+        throw InputError("The folder " + folder_ + " cannot be made: " + error.message() + ".");
     }
 }
 

@@ -65,26 +65,30 @@ std::optional<std::string> interpreterOf(std::ifstream& file, const Elf64_Ehdr& 
     return std::nullopt;
 }
 
-// Of what is no program of this machine, or is linked statically, a sentence is thrown.
+// Throws InputError for a file that is no program of this machine, and for a static program.
 std::string loaderOf(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) {
-        throw InputError(path + " cannot be read, which is how its libraries are found");
+        throw InputError(
+            path + " cannot be read, so its libraries are unknown: you need the right to read it.");
     }
     Elf64_Ehdr header{};
     const bool isWhole = readAt(file, 0, header);
     if (header.e_ident[0] == '#' && header.e_ident[1] == '!') {
-        throw InputError(path +
-                         " is a script; name the program that it starts, or what runs it, with "
-                         "--precision");
+        throw InputError(
+            path +
+            " is a script: name the program that it starts, or the script's interpreter "
+            "with --precision.");
     }
     if (!isWhole || !std::equal(ELFMAG, ELFMAG + SELFMAG, header.e_ident) ||
         header.e_ident[EI_CLASS] != ELFCLASS64 || header.e_machine != kMachine) {
-        throw InputError(path + " is no 64-bit program for this machine");
+        throw InputError(path + " is not a 64-bit program for this machine.");
     }
     const std::optional<std::string> loader = interpreterOf(file, header);
     if (!loader) {
-        throw InputError(path + " is linked statically as a whole: nothing can be loaded into it");
+        throw InputError(path +
+                         " is a static program, into which hashphase cannot be loaded: link "
+                         "Bullet's shared libraries.");
     }
     return *loader;
 }
@@ -155,7 +159,7 @@ std::vector<SharedLibrary> sharedLibrariesOf(const std::string& path, const std:
     if (output.status != 0) {
         const std::string reason = printable(output.text.substr(0, output.text.find('\n')));
         throw InputError(path + " cannot be loaded by " + loader +
-                         (reason.empty() ? "" : ": " + reason));
+                         (reason.empty() ? "" : ": " + reason) + ".");
     }
     return libraries;
 }
@@ -174,7 +178,8 @@ std::string precisionOf(const SharedLibrary& bullet) {
     if (fileContains(bullet.path, "_ZN14btCapsuleShapeC1Edd")) {
         return "double";
     }
-    throw InputError(bullet.path + " does not tell the precision of its numbers");
+    throw InputError(bullet.path +
+                     " has no btCapsuleShape, so the precision of this Bullet is unknown.");
 }
 
 // Bullet's code in the program, or in a library of its own, as its type's name tells.
@@ -185,9 +190,10 @@ void refuseStaticBullet(const std::string& path, const std::vector<SharedLibrary
     }
     for (const std::string& holder : holders) {
         if (fileContains(holder, "16btDbvtBroadphase")) {
-            throw InputError("Bullet is linked statically into " + holder +
-                             ", where its broadphase cannot be taken over; link Bullet's shared "
-                             "libraries, or swap the broadphase in the source");
+            throw InputError(
+                "Bullet is linked statically into " + holder +
+                ", where hashphase cannot replace its broadphase: link Bullet's shared "
+                "libraries, or swap the broadphase in the source.");
         }
     }
 }
@@ -197,7 +203,7 @@ void refuseStaticBullet(const std::string& path, const std::vector<SharedLibrary
 std::string findProgram(const std::string& word) {
     if (word.find('/') != std::string::npos) {
         if (!isExecutable(word)) {
-            throw InputError(quotedWord(word) + " is no program that can be run");
+            throw InputError(quotedWord(word) + " is not a program that can be run.");
         }
         return word;
     }
@@ -211,7 +217,7 @@ std::string findProgram(const std::string& word) {
         }
     }
     throw InputError(quotedWord(word) + " was not found in PATH" +
-                     (isExecutable(word) ? "; did you mean ./" + word + "?" : ""));
+                     (isExecutable(word) ? "; did you mean ./" + word + "?" : "."));
 }
 
 std::vector<std::string> bulletsOf(const std::vector<std::string>& libraries) {
@@ -247,26 +253,28 @@ TriedProgram inspectProgram(const std::string& path, const std::vector<std::stri
     if (bullet == libraries.end()) {
         refuseStaticBullet(path, libraries);
         if (precision.empty()) {
-            throw InputError(path +
-                             " links no Bullet; if it loads Bullet as it runs, name its "
-                             "precision by --precision");
+            throw InputError(
+                path +
+                " links no Bullet. If it loads Bullet while it runs, give the precision "
+                "of that Bullet with --precision.");
         }
         program.precision = precision;
         return program;
     }
     if (bullet->path.empty()) {
-        throw InputError(path + " cannot be loaded: " + bullet->name + " was not found");
+        throw InputError(path + " cannot be loaded: " + bullet->name +
+                         " was not found. Install it, or set LD_LIBRARY_PATH.");
     }
     if (std::find(ownBullets.begin(), ownBullets.end(), bullet->name) == ownBullets.end()) {
         throw InputError(path + " links " + bullet->name + ", and this hashphase was built with " +
                          joined(ownBullets, " or ") +
-                         ": build hashphase with the Bullet of the program");
+                         ": build hashphase with the Bullet of the program.");
     }
     program.bullet = bullet->name;
     program.precision = precisionOf(*bullet);
     if (!precision.empty() && precision != program.precision) {
-        throw InputError(path + " links " + bullet->name + ", which is of " + program.precision +
-                         " precision, and not " + precision);
+        throw InputError(path + " links " + bullet->name + ", which has " + program.precision +
+                         " precision, not " + precision + ": leave out --precision.");
     }
     return program;
 }

@@ -115,7 +115,7 @@ public:
             posix_spawn(&child_, call.path.c_str(), nullptr, nullptr, pointersTo(call.words).data(),
                         pointersTo(call.variables).data());
         if (error != 0) {
-            throw InputError(call.path + " cannot be run: " + std::strerror(error));
+            throw InputError(call.path + " cannot be run: " + std::strerror(error) + ".");
         }
     }
 

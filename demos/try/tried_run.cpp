@@ -34,8 +34,9 @@ public:
         }
         if (bytes == MAP_FAILED) {
             unlink(path_.c_str());
-            throw InputError("no file of " + std::to_string(sizeof(tryout::Record) >> 20U) +
-                             " MiB can be made in the folder of temporary files (TMPDIR)");
+            throw InputError("No file of " + std::to_string(sizeof(tryout::Record) >> 20U) +
+                             " MiB can be made in the folder of temporary files: make room, or set "
+                             "TMPDIR to another folder.");
         }
         record_ = static_cast<tryout::Record*>(bytes);  // of zeros
         record_->format = tryout::Record::kFormat;
@@ -119,8 +120,10 @@ std::vector<tryout::StepRow> stepsOf(const tryout::Record& record) {
 ProgramCall callFor(const TriedRunSettings& settings, const std::string& recordPath) {
     for (const std::string& library : settings.preloads) {
         if (library.find_first_of(" :") != std::string::npos) {
-            throw InputError(library +
-                             " cannot be preloaded: there is a blank or a colon in the path");
+            throw InputError(
+                library +
+                " cannot be preloaded, because its path has a blank or a colon: install "
+                "hashphase elsewhere.");
         }
     }
     ProgramCall call = settings.call;

@@ -40,30 +40,30 @@ struct TryOptions {
 void declare(CLI::App& app, TryOptions& options) {
     app.footer(
         "hashphase try [OPTIONS] -- PROGRAM [ARGUMENT]...\n\n"
-        "PROGRAM links Bullet's shared libraries, and makes its broadphase from btDbvtBroadphase, "
-        "btAxisSweep3 or\nbt32BitAxisSweep3. With ours in place, the trees in "
-        "btDbvtBroadphase::m_sets are empty for programs that\nwalk them themselves. "
-        "Ctrl-C ends the program, and further runs.\n"
-        "Times are the processor time of the thread that makes the steps: other programs do not "
-        "lengthen it.");
+        "PROGRAM must link Bullet's shared libraries, and use btDbvtBroadphase, btAxisSweep3 or "
+        "bt32BitAxisSweep3. While hashphase replaces them, the trees in btDbvtBroadphase::m_sets "
+        "are empty.\n"
+        "Ctrl-C ends the program, and skips further runs.\n"
+        "Times are the processor time of the thread that makes the steps, so other programs do not "
+        "lengthen them.");
     CLI::Option* verify = app.add_flag(
         "--verify", options.verify,
-        "one run with ours at work and Bullet's beside it: compare the pairs of both with the "
-        "exact ones in every step");
-    app.add_option("--runs", options.runs, "so many runs with each broadphase, by turns")
+        "run once, with both broadphases, and compare the pairs of both with the exact pairs in "
+        "every step");
+    app.add_option("--runs", options.runs, "runs with each broadphase, in turns")
         ->capture_default_str()
         ->transform(wholeFrom(1, 1000))
         ->excludes(verify);
-    app.add_option("--steps", options.steps, "end the program after so many steps")
+    app.add_option("--steps", options.steps, "end the program after this many steps")
         ->transform(wholeFrom(1, tryout::Record::kMaxRows));
-    app.add_option("--seconds", options.seconds, "end the program after so many seconds")
+    app.add_option("--seconds", options.seconds, "end the program after this many seconds")
         ->transform(positiveSeconds());
     app.add_option("--precision", options.precision,
-                   "of the Bullet that the program loads as it runs")
+                   "precision of the Bullet that the program loads while it runs")
         ->check(CLI::IsMember({"single", "double"}))
         ->type_name("NAME");
-    addFileToWrite(app, "--json", options.jsonFile, "write everything measured to this file");
-    app.add_flag("--quiet", options.quiet, "say nothing but the results and what is waited for");
+    addFileToWrite(app, "--json", options.jsonFile, "write all results to this file");
+    app.add_flag("--quiet", options.quiet, "print only results, and what is waited for");
 }
 
 // --- What is tried -------------------------------------------------------------------------------
@@ -96,9 +96,10 @@ TriedRunSettings settingsFor(const TryOptions& options, const TriedProgram& prog
     // A script may have read some of it, and go on behind us.
     settings.inputBegin = lseek(STDIN_FILENO, 0, SEEK_CUR);
     if (access(preload.c_str(), F_OK) != 0) {
-        throw InputError("this hashphase was built without " +
+        throw InputError("This hashphase has no " +
                          std::filesystem::path(preload).filename().string() +
-                         ": Bullet of that precision was not found when it was");
+                         ", because its build found no Bullet of that precision: install that "
+                         "Bullet, and build hashphase again.");
     }
     if (!program.sanitizer.empty()) {
         settings.preloads.push_back(program.sanitizer);
@@ -112,18 +113,17 @@ TriedRunSettings settingsFor(const TryOptions& options, const TriedProgram& prog
     const std::string ended = program.path + " " + run.end.text;
     if (!run.isLoaded) {
         throw InputError(ended +
-                         ", and has not loaded what was preloaded: programs with rights of their "
-                         "own (setuid) do not, nor those that are started without LD_PRELOAD");
+                         ", and did not load hashphase. Setuid programs never do, nor do programs "
+                         "that are started without LD_PRELOAD.");
     }
     if (run.end.isCrash) {
         throw InputError(program.path +
-                         " had made no btDbvtBroadphase and no axis sweep, and so nothing to "
-                         "compare, when it " +
-                         run.end.text);
+                         " had made no btDbvtBroadphase and no axis sweep to compare when it " +
+                         run.end.text + ".");
     }
     throw InputError(ended +
-                     ", and has made no btDbvtBroadphase and no axis sweep that can be taken over: "
-                     "there is nothing to compare");
+                     ", and made no btDbvtBroadphase and no axis sweep that hashphase can replace: "
+                     "there is nothing to compare.");
 }
 
 std::vector<Broadphase> turnsFor(const TryOptions& options) {
@@ -171,15 +171,15 @@ void runAll(const TryOptions& options, Trial& trial, Console& console) {
 
 int runTry(const TryOptions& options, Console& console) {
     if (console.rest.empty()) {
-        throw InputError("name a program to try: hashphase try -- ./program its arguments");
+        throw InputError("Name a program to try: hashphase try -- ./program its arguments");
     }
     // Whoever has started us may ignore them, and then none could be waited for.
     std::signal(SIGCHLD, SIG_DFL);
     const std::vector<std::string> bullets =
         bulletsOf({preloadFor("single"), preloadFor("double")});
     if (bullets.empty()) {
-        throw InputError("this hashphase has no " + preloadFor("single") +
-                         " to load into programs, as builds under a sanitizer have not");
+        throw InputError("This hashphase has no " + preloadFor("single") +
+                         " to load into programs. Builds with a sanitizer have none.");
     }
     Trial trial;
     trial.commandLine = joined(console.rest, " ");

@@ -18,42 +18,44 @@ namespace hashphase::benchmarks {
 namespace {
 
 constexpr const char* kDescription =
-    "Measures hashphase beside Bullet's broadphases and those of other libraries: every "
-    "contestant\n"
-    "gets the same frames, one after another in each frame, and every answer is checked. Prints a\n"
-    "table for each case and one for all; takes half an hour. Above 100,000 objects (--sizes)\n"
-    "btDbvtBroadphase takes seconds a frame.";
+    "Measures hashphase next to Bullet's broadphases and the broadphases of other libraries. In "
+    "each frame all contestants run one after the other on the same objects, and every answer is "
+    "checked. Prints a table per case, and one for all cases. All cases take half an hour; above "
+    "100,000 objects (--sizes) btDbvtBroadphase takes seconds per frame.";
 
 constexpr int kQuickFrames = 5;
 constexpr int kQuickWarmUpFrames = 3;
 
 void declare(CLI::App& app, BenchmarkOptions& options) {
-    app.add_option("--only", options.only,
-                   "cases whose name contains a match of one of these regular expressions, "
-                   "separated by commas; some, as 'cellsize', are run on request only")
+    app.add_option(
+           "--only", options.only,
+           "run only cases whose name matches one of these regular expressions, separated by "
+           "commas; some cases, such as 'cellsize', run only on request")
         ->delimiter(',')
         ->type_name("REGEX");
     app.add_option("--sizes", options.sizes,
-                   "numbers of objects, separated by commas, for all that come in any size")
+                   "numbers of objects, separated by commas, for the cases that take any number")
         ->delimiter(',')
         ->transform(demos::wholeFrom(1, 10'000'000));
     app.add_option("--contestants", options.contestants,
-                   "who takes part, separated by commas (see --list); without dbvt no ratios")
+                   "run only these contestants, separated by commas; --list prints all. Without "
+                   "dbvt there are no ratios")
+        ->type_name("NAME")
         ->delimiter(',');
     app.add_option("--frames", options.frames,
-                   "measured frames a case (default: 60; up to 1,000 objects 300; of effects 1000)")
+                   "measured frames per case (default: 60; up to 1,000 objects 300; for effects "
+                   "1,000)")
         ->transform(demos::wholeFrom(1, 1'000'000));
     app.add_option("--seed", options.seed, "seed of all scenes")
         ->transform(demos::seedUpTo())
         ->capture_default_str();
-    app.add_option("--time-limit", options.timeLimit, "stop after so many seconds")
+    app.add_option("--time-limit", options.timeLimit, "stop after this many seconds")
         ->transform(demos::positiveSeconds());
-    demos::addFileToWrite(app, "--json", options.jsonFile,
-                          "write everything measured to this file");
+    demos::addFileToWrite(app, "--json", options.jsonFile, "write all results to this file");
     app.add_flag("--quick", options.quick,
-                 "at most 300 objects and 5 frames: checks the answers, measures nothing");
-    app.add_flag("--quiet", options.quiet, "no progress on stderr");
-    app.add_flag("--list", options.list, "say which cases and contestants there are");
+                 "check the answers only: at most 300 objects and 5 frames");
+    app.add_flag("--quiet", options.quiet, "print no progress");
+    app.add_flag("--list", options.list, "print the cases and contestants, and exit");
 }
 
 void printLists(const std::vector<Benchmark>& benchmarks, const std::vector<ContestantKind>& kinds,
@@ -85,7 +87,7 @@ std::vector<std::regex> compiled(const std::vector<std::string>& patterns) {
         try {
             expressions.emplace_back(pattern);
         } catch (const std::regex_error&) {
-            throw InputError("'" + pattern + "' is no regular expression.");
+            throw InputError("'" + pattern + "' is not a regular expression.");
         }
     }
     return expressions;
@@ -168,7 +170,8 @@ std::vector<Case> selectCases(const std::vector<Benchmark>& benchmarks,
         }
     }
     if (cases.empty()) {
-        throw InputError("nothing that can be measured matches; --list says what there is.");
+        throw InputError(
+            "No case matches --only, --sizes and --contestants; --list prints all cases.");
     }
     return cases;
 }

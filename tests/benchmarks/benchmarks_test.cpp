@@ -427,8 +427,8 @@ TEST(Benchmarks, RefuseWhatTheyDoNotKnowWithAHint) {
               "hashphase: There is no contestant 'hahs'; did you mean 'hash'?\n");
     EXPECT_EQ(errorOf({"--onyl", "S1"}),
               "hashphase: There is no option '--onyl'; did you mean '--only'?\n");
-    EXPECT_EQ(errorOf({"--only", "("}), "hashphase: '(' is no regular expression.\n");
-    EXPECT_NE(errorOf({"--only", "S9"}).find("--list says what there is"), std::string::npos);
+    EXPECT_EQ(errorOf({"--only", "("}), "hashphase: '(' is not a regular expression.\n");
+    EXPECT_NE(errorOf({"--only", "S9"}).find("--list prints all cases"), std::string::npos);
     EXPECT_NE(errorOf({"stray"}).find("see tests/benchmarks/run --help"), std::string::npos);
     EXPECT_EQ(run({"--sizes", "0"}).exitCode, demos::kExitUsage);
     EXPECT_EQ(run({"--help"}).exitCode, demos::kExitOk);

@@ -215,7 +215,7 @@ TEST(Accuracy, RefusesAFolderThatCannotBeWrittenBeforeItMeasures) {
     const std::string file = folder.write("file", "");
     const Typed below = runAccuracy({"--output", file + "/r"}, experiments);
     EXPECT_EQ(below.exitCode, kExitUsage);
-    EXPECT_TRUE(holds(below.err, file + "/r cannot be made: "));
+    EXPECT_TRUE(holds(below.err, "The folder " + file + "/r cannot be made: "));
     std::filesystem::create_directories(folder.file("taken/accuracy.html"));
     const Typed taken = runAccuracy({"--output", folder.file("taken")}, experiments);
     EXPECT_EQ(taken.exitCode, kExitUsage);

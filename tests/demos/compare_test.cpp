@@ -239,9 +239,9 @@ TEST(Compare, ReadsARecordingToItsEndAndNoFurther) {
     EXPECT_EQ(outcome.exitCode, kExitOk) << outcome.err;
     EXPECT_TRUE(holds(outcome.out, "1 boxes, 3 frames"));
     EXPECT_EQ(runCompare({"compare", "--file", path, "--frames", "4"}).err,
-              "hashphase: " + path + " holds 3 frames, but 4 were asked for.\n");
+              "hashphase: " + path + " holds 3 frames, but --frames asks for 4.\n");
     EXPECT_EQ(runCompare({"compare", "--file", path, "--seed", "7"}).err,
-              "hashphase: --seed is for scenes and boxes as text; no seed changes " + path + ".\n");
+              "hashphase: --seed has no effect on " + path + "; leave it out.\n");
 }
 
 #if HASHPHASE_HAS_BULLET_IMPORTER

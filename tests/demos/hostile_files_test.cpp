@@ -53,7 +53,8 @@ void expectRefused(const std::string& path, const std::string& why = {}) {
 
 TEST(HostileFiles, ThatAreNoneAreRefused) {
     const TemporaryFolder folder;
-    expectRefused(folder.file("none"), folder.file("none") + " cannot be opened for reading.");
+    expectRefused(folder.file("none"),
+                  folder.file("none") + " cannot be read: there is no such file.");
     expectRefused(folder.file(""), folder.file("") + " is a folder, not a file.");
     expectRefused(folder.write("empty", ""));
 }
@@ -66,7 +67,8 @@ TEST(HostileFiles, ThatNeverBeginOrNeverEndAreRefused) {
     expectRefused("/dev/zero");
     expectRefused("/dev/null");
     const std::string message = messageOf<InputError>([] { return readFile("/dev/zero"); });
-    EXPECT_EQ(message, "/dev/zero is a device or a pipe, not a file.");
+    EXPECT_EQ(message,
+              "/dev/zero is a device or a pipe, not a file: save its content to a file first.");
 }
 
 // It takes no room on the disk, and must take none in memory.
@@ -75,7 +77,7 @@ TEST(HostileFiles, ThatAreTooLargeAreNotRead) {
     const std::string path = folder.write("large", "");
     std::filesystem::resize_file(path, kLargestFile + 1);
     EXPECT_EQ(messageOf<InputError>([&] { return readFile(path); }),
-              path + " has 1073741825 bytes, which is more than the 1073741824 that are read.");
+              path + " has 1,073,741,825 bytes; a file may have at most 1,073,741,824.");
     expectRefused(path);
 }
 

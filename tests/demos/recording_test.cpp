@@ -84,7 +84,7 @@ TEST(Recording, PlaysTheFirstObjectsWhenFewerAreAskedFor) {
     ASSERT_EQ(scene.boxes().size(), 2U);
     EXPECT_EQ(scene.boxes()[1].min().x(), 11);
     EXPECT_EQ(messageOf<InputError>([&path] { const RecordingScene more(path, 4); }),
-              path + " holds 3 objects, but 4 were asked for.");
+              path + " holds 3 objects, but --objects asks for 4.");
 }
 
 TEST(Recording, IsRefusedWhenTruncatedAtAnyByte) {

@@ -48,51 +48,56 @@ struct WanderOptions {
 
 /// What is shown, and at its beginning; what is done with it, and for how long; and what is said and written.
 void declareWander(CLI::App& app, WanderOptions& options) {
-    CLI::Option* scene =
-        app.add_option("--scene", options.scene.name, "scene (see --list)")->capture_default_str();
+    CLI::Option* scene = app.add_option("--scene", options.scene.name, "scene; --list prints all")
+                             ->type_name("NAME")
+                             ->capture_default_str();
     CLI::Option* file =
-        addFileToRead(app, "--file", options.scene.file,
-                      "instead of a scene: a scene file (.json), or a recording of boxes (.aabbs)")
+        addFileToRead(
+            app, "--file", options.scene.file,
+            "read this file instead: a scene file (.json), or a recording of boxes (.aabbs)")
             ->excludes(scene);
     CLI::Option* objects = app.add_option("--objects", options.scene.objects,
-                                          "number of bodies (default: as the scene has)");
+                                          "number of bodies (default: the scene's own)");
     objects->transform(wholeFrom(1, kMostObjects));
     CLI::Option* seed = app.add_option("--seed", options.seed,
-                                       "seed of the scene (default: 1, or as a scene file says)");
+                                       "seed of the scene (default: 1, or the scene file's own)");
     seed->transform(seedUpTo(kMostSeed));
-    CLI::Option* commands =
-        app.add_option("--do", options.commands, "run this command at the start; can be repeated");
-    commands->allow_extra_args(false);
-    CLI::Option* script = addFileToRead(app, "--script", options.scriptFile,
-                                        "run the commands of this file after --do");
-    CLI::Option* replay = addFileToRead(
-        app, "--replay", options.replayFile,
-        "replay a recording and compare the results; in a window, pause (P), step (O) and "
-        "restart (R) work, but no command that would change it");
+    CLI::Option* commands = app.add_option(
+        "--do", options.commands, "run this command at the start; give the option again for more");
+    commands->type_name("COMMAND")->allow_extra_args(false);
+    CLI::Option* script =
+        addFileToRead(app, "--script", options.scriptFile, "then run the commands of this file");
+    CLI::Option* replay = addFileToRead(app, "--replay", options.replayFile,
+                                        "play back this recording, and compare the results; in a "
+                                        "window you can pause (P), step (O) and restart (R) it, "
+                                        "and change nothing");
     for (CLI::Option* other : {script, scene, file, objects, seed, commands}) {
         replay->excludes(other);
     }
-    app.add_option("--frames", options.frames,
-                   "number of frames (default: until the window is closed; 300 with --headless, or "
-                   "fewer if a command pauses the scene)")
+    app.add_option(
+           "--frames", options.frames,
+           "number of frames (default: until you close the window; 300 without a window, or "
+           "fewer if a command pauses it)")
         ->transform(wholeFrom(1, 1'000'000'000))
         ->excludes(script)
         ->excludes(replay);
     app.add_option("--time-limit", options.timeLimit,
-                   "stop after this many seconds; a script or replay that is cut off has failed")
+                   "stop after this many seconds; a script or a replay that is cut off has failed")
         ->transform(positiveSeconds());
     app.add_option("--threads", options.threads,
-                   "most threads for the simulation (default: all; Bullet's scenes use one)")
+                   "most threads to simulate on (default: all; Bullet's scenes use one)")
         ->transform(wholeFrom(1, 1024));
-    app.add_option("--size", options.size,
-                   "width and height of the picture [pixels], up to 8192x8192")
+    app.add_option("--size", options.size, "size of the picture in pixels, up to 8,192 each way")
+        ->type_name("WIDTHxHEIGHT")
         ->capture_default_str();
-    app.add_flag("--headless", options.isHeadless, "run without a window; screenshots still work");
-    addFileToWrite(app, "--record", options.recordFile, "write a recording at the end");
-    addFileToWrite(app, "--screenshot", options.screenshotFile, "write a picture at the end (PNG)");
+    app.add_flag("--headless", options.isHeadless, "open no window: pictures are screenshots only");
+    addFileToWrite(app, "--record", options.recordFile,
+                   "write a recording to this file at the end");
+    addFileToWrite(app, "--screenshot", options.screenshotFile,
+                   "write a picture (PNG) to this file at the end");
     addFileToWrite(app, "--json", options.jsonFile, "write all numbers to this file at the end");
-    app.add_flag("--quiet", options.quiet, "show no progress on stderr");
-    app.add_flag("--list", options.list, "list scenes, keys, commands and readings");
+    app.add_flag("--quiet", options.quiet, "print no progress");
+    app.add_flag("--list", options.list, "print the scenes, commands, keys and readings, and exit");
 }
 
 // --- A run ---------------------------------------------------------------------------------------
