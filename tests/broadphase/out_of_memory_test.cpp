@@ -227,7 +227,7 @@ TEST_F(OutOfMemory, RegionsNeighboursAndCrowdsAreFoundWhenAskedAgain) {
     EXPECT_GE(askOutOfMemory<AskedWorld>(), 70U);
 }
 
-TEST_F(OutOfMemory, LeavesWhatIsRefusedAsItWasWhenAFailedUpdateIsRepairedInVain) {
+TEST_F(OutOfMemory, FailedUpdateKeepsRefusedPairs) {
     struct Refusing {
         Refusing() {
             for (int i = 0; i < 100; ++i) {

@@ -17,7 +17,7 @@ int sentences = 0;
 
 void takeSentence(const char*, const char* sentence, const char*, int) {
     constexpr const char* kExpected =
-        "Only a proxy that this broadphase created and did not destroy can be used.";
+        "A proxy is null, destroyed or of another broadphase. Pass a live one of this one.";
     sentences += std::strcmp(sentence, kExpected) == 0 ? 1 : 1000;
 }
 
