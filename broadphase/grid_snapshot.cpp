@@ -118,8 +118,8 @@ const char* GridSnapshot<Scalar>::faultFor(const Grid<Scalar>& grid,
         return detail::kPairsGoWithTheirGrid;
     }
     if (twin_->hasSweeps != (detail::motionsOf(pairs) != nullptr)) {
-        return "GridSnapshot::restore(): of the saved and the present Pairs, only one has Sweeps. "
-               "Give both Sweeps, or neither.";
+        return "GridSnapshot::restore(): only the saved Pairs or only these Pairs have Sweeps. "
+               "Give Sweeps to both, or to neither.";
     }
     return detail::faultOf(grid, pairs);
 }

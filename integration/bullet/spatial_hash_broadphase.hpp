@@ -389,7 +389,7 @@ private:
     [[nodiscard]] Proxy* checkedProxy(btBroadphaseProxy* proxy) const {
         HASHPHASE_ASSERT(
             proxy != nullptr && grid_.contains(idOf(proxy)) && proxyAt(idOf(proxy).index) == proxy,
-            "A proxy is null, destroyed or of another broadphase. Pass a live one of this one.");
+            "A proxy is null, destroyed or of another broadphase. Pass a live proxy of this one.");
         return static_cast<Proxy*>(proxy);
     }
 

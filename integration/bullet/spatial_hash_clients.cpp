@@ -90,9 +90,9 @@ void SpatialHashBroadphase::setMargin(btBroadphaseProxy* proxy, btScalar margin,
     checkMayChange();
     Proxy* const own = checkedProxy(proxy);
     const bool isGood = margin >= 0 && margin <= std::numeric_limits<btScalar>::max();
-    HASHPHASE_ASSERT(
-        isGood,
-        "setMargin(): the margin is negative, NaN or infinite. Pass a finite one of 0 m or more.");
+    HASHPHASE_ASSERT(isGood,
+                     "setMargin(): the margin is negative, NaN or infinite. Pass a finite margin "
+                     "of 0 m or more.");
     if (!own->id.isNull() && isGood) {
         mayGrow_ = mayGrow_ || margin != 0;
         setAnyAabb(*own, own->m_aabbMin, own->m_aabbMax, margin, dispatcher);

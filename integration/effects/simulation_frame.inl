@@ -18,7 +18,7 @@ template <class Scalar>
 const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor parallelFor) {
     HASHPHASE_ASSERT(seconds >= 0 && std::isfinite(seconds),
                      "Simulation::advance(): the time step is negative, NaN or infinite. Pass a "
-                     "finite one of 0 s or more.");
+                     "finite time of 0 s or more.");
     if (pairing_ && pairing_->isSpent) {
         pairing_ = nullptr;
         stockIsStale_ = true;

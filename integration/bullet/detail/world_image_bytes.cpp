@@ -308,7 +308,7 @@ std::string WorldImage::readJoints(ByteReader& from, btDiscreteDynamicsWorld& wo
         found = found != nullptr ? found : handedOver.next();
         if (found == nullptr || !isBetween(*found) || !isKnown(*found)) {
             return "Joint " + std::to_string(i) +
-                   " is not in the world: none there has its type and bodies. Hand it over as "
+                   " is not in the world: no joint there has its type and bodies. Hand it over as "
                    "Returned::joints.";
         }
         joints.push_back({found, type, &found->getRigidBodyA(), &found->getRigidBodyB()});
