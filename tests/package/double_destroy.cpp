@@ -17,7 +17,7 @@ int sentences = 0;
 
 void takeSentence(const char*, const char* sentence, const char*, int) {
     constexpr const char* kExpected =
-        "A proxy is null, destroyed or of another broadphase. Pass a live one of this one.";
+        "A proxy is null, destroyed or of another broadphase. Pass a live proxy of this one.";
     sentences += std::strcmp(sentence, kExpected) == 0 ? 1 : 1000;
 }
 
