@@ -258,7 +258,7 @@ class Replay {
                 ? `${broadphase.name} lists exactly these`
                 : `${broadphase.name}: ${faultsOf(missing, extra)}`;
         this.part(".counts").textContent =
-            `${thousands(inAll)} pairs overlap` +
+            `Overlapping pairs: ${thousands(inAll)}` +
             when(here < inAll, `, ${thousands(here)} of them between recorded objects`) +
             when(listed < here, ", too many to draw") +
             `. ${verdict}` +

@@ -47,8 +47,8 @@ std::string whatIsRecorded(const Json& recording, const ReplaySettings& settings
                 withThousands(settings.pairs) + " pairs, which are counted but not drawn. ";
     }
     if (recording["objectsCut"] > 0) {
-        text += thousands(recording["objectsCut"]) + " of the " + settings.noun +
-                " leave the drawn world, or have a NaN: the picture cuts them off at its border. ";
+        text += "The picture cuts off " + thousands(recording["objectsCut"]) + " of the " +
+                settings.noun + " at its border: outside the drawn world, or with a NaN. ";
     }
     if (const Json& ground = recording["ground"]; !ground.is_null()) {
         text += "The terrain is drawn from " + thousands(ground["columns"]) + " x " +

@@ -389,7 +389,7 @@ const checkHeap = (pairs) => async (page) => {
     assert.deepEqual((await evaluate(allFrames)).map(([, each]) => each), [pairs]);
     assert.equal((await evaluate("choose('pairs', true)")).lines, "0", "more pairs than are listed");
     const counts = await evaluate("root.querySelector('.counts').textContent");
-    assert(counts.startsWith(`${pairs.toLocaleString("en")} pairs overlap, too many`), counts);
+    assert(counts.startsWith(`Overlapping pairs: ${pairs.toLocaleString("en")}, too many`), counts);
 };
 
 // A broadphase that is wrong, and not ours.

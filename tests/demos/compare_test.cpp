@@ -3,6 +3,7 @@
 #include <demos/compare/trial.hpp>
 #include <demos/report/stopwatch.hpp>
 #include <tests/demos/bullet_file.hpp>
+#include <tests/demos/spoiled_broadphase.hpp>
 #include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
 
@@ -21,44 +22,15 @@ Typed runCompare(const std::vector<std::string>& arguments,
     return typed(arguments, std::array{compareCommand(kinds)});
 }
 
-// Bullet's brute force, but for what it does to one pair from frame 3 on.
-class Broken : public btSimpleBroadphase {
-public:
-    using btSimpleBroadphase::btSimpleBroadphase;
-
-    btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shapeType,
-                                   void* client, int group, int mask,
-                                   btDispatcher* dispatcher) override {
-        proxies_.push_back(
-            btSimpleBroadphase::createProxy(low, high, shapeType, client, group, mask, dispatcher));
-        return proxies_.back();
-    }
-
-    void calculateOverlappingPairs(btDispatcher* dispatcher) override {
-        btSimpleBroadphase::calculateOverlappingPairs(dispatcher);
-        if (frame_++ >= 3) {
-            spoil(dispatcher);
-        }
-    }
-
-protected:
-    virtual void spoil(btDispatcher* dispatcher) = 0;
-
-    std::vector<btBroadphaseProxy*> proxies_;
-
-private:
-    int frame_ = 0;
-};
-
-class MissesOnePair : public Broken {
-    using Broken::Broken;
+class MissesOnePair : public SpoiledBroadphase {
+    using SpoiledBroadphase::SpoiledBroadphase;
     void spoil(btDispatcher* dispatcher) override {
         getOverlappingPairCache()->removeOverlappingPair(proxies_[0], proxies_[1], dispatcher);
     }
 };
 
-class InventsOnePair : public Broken {
-    using Broken::Broken;
+class InventsOnePair : public SpoiledBroadphase {
+    using SpoiledBroadphase::SpoiledBroadphase;
     void spoil(btDispatcher* /*dispatcher*/) override {
         getOverlappingPairCache()->addOverlappingPair(proxies_[0], proxies_[2]);
     }

@@ -4,6 +4,7 @@
 
 #include <demos/console/format.hpp>
 #include <demos/viewer/show/annotations.hpp>
+#include <tests/viewer/show/play.hpp>
 
 #include <gtest/gtest.h>
 
@@ -19,13 +20,7 @@ namespace {
 /// A session after these commands, each followed by a frame of the viewer.
 Session after(std::initializer_list<const char*> commands) {
     Session session({.name = "wander", .file = {}, .objects = 3000, .seed = 1}, 800, 600);
-    session.isPlaying = false;
-    for (const char* command : commands) {
-        session.run(command);
-        do {
-            session.advance();
-        } while (session.isWaiting());
-    }
+    play(session, commands);
     return session;
 }
 

@@ -9,6 +9,7 @@
 #include <demos/viewer/show/viewer.hpp>
 #include <tests/support/temporary_folder.hpp>
 #include <tests/viewer/pictures.hpp>
+#include <tests/viewer/show/play.hpp>
 
 #include <gtest/gtest.h>
 
@@ -39,13 +40,7 @@ Image seen(const Session& session) {
 Image after(const SceneChoice& choice, const std::vector<const char*>& commands, int width = kWidth,
             int height = kHeight) {
     Session session(choice, width, height);
-    session.isPlaying = false;
-    for (const char* command : commands) {
-        session.run(command);
-        do {
-            session.advance();
-        } while (session.isWaiting());
-    }
+    play(session, commands);
     return seen(session);
 }
 
