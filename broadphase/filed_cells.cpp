@@ -2,6 +2,7 @@
 #include <broadphase/filed_cells.hpp>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <tuple>
 
@@ -13,11 +14,12 @@ using detail::Cell;
 /// Where a proxy is filed: two levels have no cell in common.
 template <class Scalar>
 struct Place {
-    std::uint32_t levelNumber;  // among all tables' levels
+    std::ptrdiff_t tableNumber;
+    std::size_t levelNumber;
     Cell cell;
     const detail::Level<Scalar>* level;
 
-    [[nodiscard]] auto key() const noexcept { return std::tie(levelNumber, cell); }
+    [[nodiscard]] auto key() const noexcept { return std::tie(tableNumber, levelNumber, cell); }
 };
 
 template <class Scalar>
@@ -41,31 +43,13 @@ Aabb<Scalar> boxOf(const Place<Scalar>& place) {
     return box;
 }
 
-/// Lists the places of what a table files, and what it lists without cells.
+/// The number of the level that has the entry.
 template <class Scalar>
-void readTable(const detail::Store<Scalar>& store, const detail::Reading<Scalar>& reading,
-               const detail::Filing<Scalar>& filing, std::uint32_t levelNumber,
-               std::vector<Place<Scalar>>& places, std::vector<ProxyId>& unfiled) {
-    const detail::Table<Scalar>& table = *filing.table;
-    for (const detail::Level<Scalar>& level : table.levels()) {
-        ++levelNumber;
-        for (std::uint32_t entry = level.firstEntry; entry < level.lastEntry; ++entry) {
-            const std::uint32_t proxyIndex = table.proxyIndex(entry);
-            if (!store.standsIn(filing, proxyIndex, reading) || hasNan(table.box(entry))) {
-                continue;
-            }
-            if (!level.hasCells()) {
-                unfiled.push_back(store.proxies.idOf(proxyIndex));
-                continue;
-            }
-            const Vector3<Scalar> corner =
-                (filing.isResting ? store.filedBox(entry) : table.box(entry)).min();
-            places.push_back(
-                {levelNumber,
-                 {level.cell(corner.x(), 0), level.cell(corner.y(), 1), level.cell(corner.z(), 2)},
-                 &level});
-        }
-    }
+std::size_t levelOf(const detail::Table<Scalar>& table, std::uint32_t entry) {
+    const auto levels = table.levels();
+    const auto isBefore = [entry](const auto& level) { return level.lastEntry <= entry; };
+    return static_cast<std::size_t>(std::partition_point(levels.begin(), levels.end(), isBefore) -
+                                    levels.begin());
 }
 
 /// One for each place that differs, the fullest first.
@@ -90,20 +74,30 @@ std::vector<FiledCell<Scalar>> cellsAt(std::vector<Place<Scalar>>& places) {
 template <class Scalar>
 FiledCells<Scalar> filedCells(const Grid<Scalar>& grid) {
     const detail::Store<Scalar>& store = grid.store();
-    const detail::Reading<Scalar> reading = store.beginReading();
+    store.mendTables();
+    // No query: it would count as one, and file what has changed.
+    const detail::Reading<Scalar> reading = store.tables.reading();
     FiledCells<Scalar> found;
     std::vector<Place<Scalar>> places;
-    std::uint32_t levelNumber = 0;
-    for (const detail::Filing<Scalar>& filing : reading.filings()) {
-        readTable(store, reading, filing, levelNumber, places, found.unfiled);
-        levelNumber += static_cast<std::uint32_t>(filing.table->levels().size());
-    }
-    for (std::size_t i = 0; i < store.proxies.waiting.size() && !reading.isFresh; ++i) {
-        const std::uint32_t proxyIndex = store.proxies.waiting[i];
-        if (store.proxies.isAlive(proxyIndex) && !store.proxies.records[proxyIndex].isNan) {
-            found.unfiled.push_back(store.proxies.idOf(proxyIndex));
-        }
-    }
+    store.forEachPlace(
+        reading,
+        [&](const detail::Filing<Scalar>& filing, std::uint32_t entry, std::uint32_t proxyIndex) {
+            const detail::Table<Scalar>& table = *filing.table;
+            const std::size_t levelNumber = levelOf(table, entry);
+            const detail::Level<Scalar>& level = table.levels()[levelNumber];
+            if (!level.hasCells()) {
+                found.unfiled.push_back(store.proxies.idOf(proxyIndex));
+                return;
+            }
+            const Vector3<Scalar> corner =
+                (filing.isResting ? store.filedBox(entry) : table.box(entry)).min();
+            places.push_back(
+                {&filing - reading.filings().data(),
+                 levelNumber,
+                 {level.cell(corner.x(), 0), level.cell(corner.y(), 1), level.cell(corner.z(), 2)},
+                 &level});
+        },
+        [&](std::uint32_t proxyIndex) { found.unfiled.push_back(store.proxies.idOf(proxyIndex)); });
     std::sort(found.unfiled.begin(), found.unfiled.end());
     found.cells = cellsAt(places);
     return found;

@@ -10,7 +10,7 @@
 //           axis: the vertical one on a terrain, where cells above each other would hold few.
 // A proxy   is filed in one cell: that of the least corner of its box, or of a box around the places where it trembles.
 // Unfiled   Some proxies are in no cell, and every query reads them: the largest ones, all of a grid that has fewer
-//           than about 32, and those that have changed since the last update.
+//           than about 32, and those that have changed since they were last filed, by an update or by queries.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/export.hpp>
@@ -36,8 +36,8 @@ struct FiledCells {
     std::vector<ProxyId> unfiled;          ///< in ascending order
 };
 
-/// Lists all cells that have proxies, and the proxies in no cell. Equal grids give equal lists. Reads the grid as a
-/// query does, from any number of threads. Cost: O(n log n).
+/// Lists all cells that have proxies, and the proxies in no cell. Changes nothing: it files no changed proxies, as
+/// queries may. Threads: as queries. Cost: O(n log n).
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT FiledCells<Scalar> filedCells(const Grid<Scalar>& grid);
 

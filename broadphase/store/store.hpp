@@ -328,6 +328,11 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Store {
     [[nodiscard]] bool doAllStand(const Reading& reading) const noexcept {
         return proxies.waiting.empty() || (reading.isFresh && proxies.settledChanged == 0);
     }
+    /// Calls visitEntry(filing, entry, proxyIndex) for each entry that stands for a proxy, then
+    /// visitWaiting(proxyIndex) for each proxy beside the tables; not for proxies with a NaN.
+    template <class VisitEntry, class VisitWaiting>
+    void forEachPlace(const Reading& reading, const VisitEntry& visitEntry,
+                      const VisitWaiting& visitWaiting) const;
     /// Calls visit(ProxyId, box) for every proxy alive whose box has no NaN, in about the order of space.
     template <class Visit>
     void forEachFiled(const Visit& visit) const;
@@ -380,24 +385,36 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Store {
 };
 
 template <class Scalar>
-template <class Visit>
-void Store<Scalar>::forEachFiled(const Visit& visit) const {
-    const Reading reading = beginReading();
+template <class VisitEntry, class VisitWaiting>
+void Store<Scalar>::forEachPlace(const Reading& reading, const VisitEntry& visitEntry,
+                                 const VisitWaiting& visitWaiting) const {
     for (const Filing& filing : reading.filings()) {
-        const Table<Scalar>& table = *filing.table;
-        for (std::uint32_t entry = 0; entry < table.size(); ++entry) {
-            const Box box = table.box(entry);
-            if (standsIn(filing, table.proxyIndex(entry), reading) && !hasNan(box)) {
-                visit(proxies.idOf(table.proxyIndex(entry)), box);
+        for (std::uint32_t entry = 0; entry < filing.table->size(); ++entry) {
+            const std::uint32_t proxyIndex = filing.table->proxyIndex(entry);
+            if (standsIn(filing, proxyIndex, reading) && !hasNan(filing.table->box(entry))) {
+                visitEntry(filing, entry, proxyIndex);
             }
         }
     }
     for (std::size_t i = 0; i < proxies.waiting.size() && !reading.isFresh; ++i) {
         const std::uint32_t proxyIndex = proxies.waiting[i];
         if (proxies.isAlive(proxyIndex) && !proxies.records[proxyIndex].isNan) {
-            visit(proxies.idOf(proxyIndex), proxies.records[proxyIndex].box);
+            visitWaiting(proxyIndex);
         }
     }
+}
+
+template <class Scalar>
+template <class Visit>
+void Store<Scalar>::forEachFiled(const Visit& visit) const {
+    forEachPlace(
+        beginReading(),
+        [&](const Filing& filing, std::uint32_t entry, std::uint32_t proxyIndex) {
+            visit(proxies.idOf(proxyIndex), filing.table->box(entry));
+        },
+        [&](std::uint32_t proxyIndex) {
+            visit(proxies.idOf(proxyIndex), proxies.records[proxyIndex].box);
+        });
 }
 
 template <class Scalar>

@@ -142,6 +142,18 @@ TYPED_TEST(FiledCellsOf, AGridLeaveOutWhatIsLargeWhatHasChangedAndWhatIsNaN) {
     expectCellsOf<TypeParam>(std::span(this->boxes).subspan(2), found.cells);
 }
 
+TYPED_TEST(FiledCellsOf, AGridAreTheSameHoweverOftenTheyAreListed) {
+    this->addSome(300);
+    this->update();
+    for (const ProxyId id : this->ids) {
+        this->grid.move(id, this->draw(0.5, 2));
+    }
+    for (int i = 0; i < 20; ++i) {
+        ASSERT_EQ(filedCells(this->grid).unfiled, this->ids) << "no call files what has changed";
+    }
+    EXPECT_TRUE(this->update().unfiled.empty());
+}
+
 TYPED_TEST(FiledCellsOf, FewProxiesAreNone) {
     this->addSome(10);
     const FiledCells<TypeParam> found = this->update();
