@@ -10,6 +10,11 @@
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
+// Red, green and blue. People who see no difference between red and green can tell them apart.
+const btVector3 kMobile(btScalar(0.34), btScalar(0.71), btScalar(0.91));
+const btVector3 kResting(btScalar(0.66), btScalar(0.69), btScalar(0.75));
+const btVector3 kUnfiled(btScalar(0.84), btScalar(0.37), btScalar(0));
+
 btVector3 colourOfLoad(std::size_t load, std::size_t full) {
     const auto [red, green, blue] =
         detail::sequentialRgb(static_cast<float>(load) / static_cast<float>(full));
@@ -57,13 +62,12 @@ DrawnCells drawCells(const SpatialHashBroadphase& broadphase, btIDebugDraw& draw
         boxes.draw(cell.box, colourOfLoad(cell.load, full));
     }
     for (const ProxyId id : filed.unfiled) {
-        boxes.draw(grid.box(id), options.unfiled);
+        boxes.draw(grid.box(id), kUnfiled);
     }
     if (options.boxes) {
         grid.forEach([&](ProxyId id, const Aabb<btScalar>& box) {
             if (!std::binary_search(filed.unfiled.begin(), filed.unfiled.end(), id)) {
-                boxes.draw(box,
-                           grid.store().proxies.rests(id.index) ? options.resting : options.mobile);
+                boxes.draw(box, grid.store().proxies.rests(id.index) ? kResting : kMobile);
             }
         });
     }

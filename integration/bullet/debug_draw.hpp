@@ -10,7 +10,8 @@
 //           yellow for eight and more; where a cell has more than eight, yellow is the fullest. See filedCells()
 //           (filed_cells.hpp).
 // Unfiled   Proxies in no cell are drawn as their boxes, red. Every query reads them all, so many of them are slow.
-// When      After stepSimulation(), cells are those of its last substep. Proxies that you have moved since are unfiled.
+// When      After stepSimulation(), cells are those of its last substep. Proxies that you have moved since are unfiled,
+//           until an update or queries file them.
 // Lines     A box has 12. The fullest cells come first, then unfiled proxies, then other proxies; beyond
 //           CellDrawing::mostLines nothing is drawn.
 
@@ -18,23 +19,19 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <LinearMath/btIDebugDraw.h>
-#include <LinearMath/btVector3.h>
 
 #include <cstddef>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// What drawCells() draws. Colours are red, green and blue, 0 to 1, and can be told apart by colour-blind people.
+/// What drawCells() draws.
 struct CellDrawing {
-    /// Draws the boxes of all proxies, as the grid has them: with their margins, and around the ways of fast bodies.
+    /// Draws the boxes of all proxies too, as the grid has them: with their margins, and around the ways of fast
+    /// bodies. Resting proxies are grey, others light blue.
     bool boxes = false;
 
     /// At most so many lines are drawn, each cell and box as a whole. The default is 5,000 cells and boxes.
     std::size_t mostLines = 60'000;
-
-    btVector3 mobile{btScalar(0.34), btScalar(0.71), btScalar(0.91)};   ///< light blue
-    btVector3 resting{btScalar(0.66), btScalar(0.69), btScalar(0.75)};  ///< grey
-    btVector3 unfiled{btScalar(0.84), btScalar(0.37), btScalar(0)};     ///< red
 };
 
 /// What there is to draw, and how much of it was drawn.
