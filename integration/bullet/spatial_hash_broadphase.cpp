@@ -229,8 +229,8 @@ void SpatialHashBroadphase::askFilter(std::span<const ProxyPair> asked,
 
 void SpatialHashBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(!isCalculating(),
-                     "calculateOverlappingPairs() was called from one of its own callbacks. Step "
-                     "the world, or call it, after the step.");
+                     "calculateOverlappingPairs() was called from one of its own callbacks. Call "
+                     "it, or step the world, after it returns.");
     const detail::QueryScope scope(idCounter_, detail::QueryScope::Changes::allowed);
     askIfMoreWasTakenOut(dispatcher);
     if (isCacheBehind_) {  // all of it is read: what this frees first is freed before pairs are listed

@@ -16,8 +16,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 void WorldsBroadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(&lastUniqueId_),
-                     "calculateOverlappingPairs() was called from one of its own callbacks. Step "
-                     "the world, or call it, after the step.");
+                     "calculateOverlappingPairs() was called from one of its own callbacks. Call "
+                     "it, or step the world, after it returns.");
     const detail::QueryScope scope(&lastUniqueId_, detail::QueryScope::Changes::allowed);
     listUpdated(dispatcher);
     if (areAnyBehind()) {  // all of the cache is read: what this frees first is freed before pairs are listed

@@ -86,8 +86,8 @@ TEST(WorldsBroadphaseMisuse, IsAsserted) {
                   })};
     };
     const std::string notCalculated =
-        "calculateOverlappingPairs() was called from one of its own callbacks. Step the world, or "
-        "call it, after the step.";
+        "calculateOverlappingPairs() was called from one of its own callbacks. Call it, or step the "
+        "world, after it returns.";
     const std::string notShifted =
         "shiftOrigin() was called from a callback of calculateOverlappingPairs(). Call it after "
         "the step.";
