@@ -8,8 +8,8 @@
 cmake_minimum_required(VERSION 3.22)
 
 if(NOT EXISTS ${MANIFEST})
-    message(FATAL_ERROR "There is nothing to remove: ${MANIFEST} does not exist. This build folder has installed "
-                        "nothing since its last `uninstall`.")
+    message(FATAL_ERROR "There is nothing to remove: ${MANIFEST} does not exist. It lists the files of the last "
+                        "`cmake --install` without --component.")
 endif()
 
 string(REPLACE "," ";" FOLDERS "${FOLDERS}")

@@ -22,6 +22,14 @@ function(uninstall_all expression)
     endif()
 endfunction()
 
+# What a user has installed from this folder can be removed after the test, too.
+set(manifest ${BUILD}/install_manifest.txt)
+set(kept ${PREFIX}_manifest.txt)
+file(REMOVE ${kept})
+if(EXISTS ${manifest})
+    file(RENAME ${manifest} ${kept})
+endif()
+
 file(REMOVE_RECURSE ${PREFIX})
 install_all()
 file(STRINGS ${BUILD}/install_manifest.txt files)
@@ -45,3 +53,7 @@ uninstall_all("There is nothing to remove")
 
 file(REMOVE_RECURSE ${PREFIX})
 install_all()
+file(REMOVE ${manifest})
+if(EXISTS ${kept})
+    file(RENAME ${kept} ${manifest})
+endif()
