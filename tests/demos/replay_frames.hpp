@@ -17,14 +17,14 @@
 
 namespace hashphase::demos {
 
-using Boxes = std::vector<Aabb<float>>;
+using FrameBoxes = std::vector<Aabb<float>>;
 
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float kEndless = std::numeric_limits<float>::infinity();
 inline const Aabb<float> kTenMetres(Vector3<float>::Zero(), Vector3<float>::Constant(10));
 
 /// So many boxes of about a metre in a cube, of which every other one drifts from frame to frame.
-inline std::vector<Boxes> driftingFrames(std::size_t objects, std::size_t frames) {
+inline std::vector<FrameBoxes> driftingFrames(std::size_t objects, std::size_t frames) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> place(0, 8);
     std::uniform_real_distribution<float> step(-0.2F, 0.2F);
@@ -33,12 +33,12 @@ inline std::vector<Boxes> driftingFrames(std::size_t objects, std::size_t frames
         const float y = numbers(random);
         return Vector3<float>(x, y, numbers(random));
     };
-    Boxes boxes;
+    FrameBoxes boxes;
     for (std::size_t i = 0; i < objects; ++i) {
         const Vector3<float> low = vector(place);
         boxes.emplace_back(low, low + Vector3<float>(1, 1.25F, 0.75F));
     }
-    std::vector<Boxes> all;
+    std::vector<FrameBoxes> all;
     for (std::size_t frame = 0; frame < frames; ++frame) {
         all.push_back(boxes);
         for (std::size_t i = 0; i < objects; i += 2) {
@@ -49,7 +49,7 @@ inline std::vector<Boxes> driftingFrames(std::size_t objects, std::size_t frames
 }
 
 /// All pairs that overlap, sorted.
-inline std::vector<PairKey> overlappingPairs(const Boxes& boxes) {
+inline std::vector<PairKey> overlappingPairs(const FrameBoxes& boxes) {
     std::vector<PairKey> pairs;
     findExactPairs(ReferenceMethod::kBrute, boxes, {}, pairs);
     return pairs;
@@ -63,7 +63,7 @@ inline ReplaySettings replaySettings() {
 }
 
 /// Records the frames until the recording is full; "wrong" misses the first pair from frame 2 on.
-inline ReplayRecording recorded(ReplaySettings settings, const std::vector<Boxes>& frames) {
+inline ReplayRecording recorded(ReplaySettings settings, const std::vector<FrameBoxes>& frames) {
     ReplayRecording recording(std::move(settings));
     for (std::size_t frame = 0; frame < frames.size() && !recording.isFull(); ++frame) {
         const std::vector<PairKey> exact = overlappingPairs(frames[frame]);

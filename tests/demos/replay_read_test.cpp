@@ -74,7 +74,7 @@ TEST_F(ReplayRead, GivesPairsBackAndBoxesToHalfAStep) {
     ASSERT_EQ(seen["frames"].size(), frames.size());
     EXPECT_GT(seen["every"], 1) << "not all frames were kept";
     for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-        const Boxes& boxes = frames[frame];
+        const FrameBoxes& boxes = frames[frame];
         const std::vector<PairKey> pairs = overlappingPairs(boxes);
         EXPECT_EQ(seen["frames"][frame]["pairs"], placesOf(pairs)) << frame;
         std::vector<int> overlapCounts(boxes.size());
@@ -111,7 +111,7 @@ TEST_F(ReplayRead, TakesForWorstWhatMissesMostOfThoseWithARecordedWrongPair) {
     if (!isThereNode()) {
         GTEST_SKIP() << kWithoutNode;
     }
-    const Boxes boxes = driftingFrames(200, 1).front();
+    const FrameBoxes boxes = driftingFrames(200, 1).front();
     const std::vector<PairKey> exact = overlappingPairs(boxes);
     ASSERT_GT(exact.size(), 3U);
     const auto worstOf = [&](const std::vector<std::array<std::size_t, 2>>& missingAndExtra) {
@@ -135,7 +135,7 @@ TEST_F(ReplayRead, TakesForWorstWhatMissesMostOfThoseWithARecordedWrongPair) {
 }
 
 TEST_F(ReplayRead, HasAFewBytesOfAFrameInWhichNothingMoves) {
-    const Boxes boxes = driftingFrames(1'000, 1).front();
+    const FrameBoxes boxes = driftingFrames(1'000, 1).front();
     ReplayTrack track(kTenMetres, firstNumbers(1'000), 0);
     track.add(boxes, {}, {});
     const std::size_t first = track.boxStream.size();
@@ -155,11 +155,11 @@ TEST_F(ReplayRead, HasAFewBytesOfAFrameInWhichNothingMoves) {
 TEST_F(ReplayRead, CutsOffWhatIsHugeOrHasNoNumbers) {
     const float most = std::numeric_limits<float>::max();
     const Vector3<float> one = Vector3<float>::Ones();
-    const Boxes boxes{{one, 2 * one},
-                      {-kEndless * one, kEndless * one},
-                      {-most * one, most * one},
-                      {Vector3<float>(kNan, 1, 1), 2 * one},
-                      {Vector3<float>(1e30F, 0, 0), Vector3<float>(1e30F, 1, 1)}};
+    const FrameBoxes boxes{{one, 2 * one},
+                           {-kEndless * one, kEndless * one},
+                           {-most * one, most * one},
+                           {Vector3<float>(kNan, 1, 1), 2 * one},
+                           {Vector3<float>(1e30F, 0, 0), Vector3<float>(1e30F, 1, 1)}};
     ReplayTrack track(kTenMetres, firstNumbers(boxes.size()), 0);
     track.add(boxes, {}, {});
     EXPECT_EQ(track.isCut, (std::vector<std::uint8_t>{0, 1, 1, 1, 1}));

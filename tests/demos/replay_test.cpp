@@ -54,7 +54,7 @@ TEST(ReplayRecording, TellsCountsAndTheFirstWrongPair) {
 TEST(ReplayRecording, TellsTheFinestCellsOfWhatHasCells) {
     ReplayRecording recording(replaySettings());
     for (const float cellSize : {1.0F, 2.5F}) {
-        const Boxes boxes = driftingFrames(5, 1)[0];
+        const FrameBoxes boxes = driftingFrames(5, 1)[0];
         recording.add(0, {boxes, {}, {}, {}, cellSize});
         recording.add(1, {boxes, {}, {}, {}});
         recording.finishFrame();
@@ -173,7 +173,7 @@ TEST(ReplayGround, CoversTheRecordedBoundsAndCountsAmongTheBytes) {
 // --- Who is recorded -----------------------------------------------------------------------------
 
 TEST(ReplaySelection, TakesThoseAroundTheMiddleOfTooMany) {
-    Boxes boxes;
+    FrameBoxes boxes;
     for (int i = 0; i < 100; ++i) {
         const Vector3<float> low(static_cast<float>(i), 0, 0);
         boxes.emplace_back(low, low + Vector3<float>::Ones());
@@ -188,7 +188,7 @@ TEST(ReplaySelection, TakesThoseAroundTheMiddleOfTooMany) {
 }
 
 TEST(ReplaySelection, KeepsTheResolutionWhereAFewAreFarAway) {
-    Boxes boxes = driftingFrames(1'000, 1).front();
+    FrameBoxes boxes = driftingFrames(1'000, 1).front();
     boxes[3].translate(Vector3<float>(1e30F, 0, 0));
     boxes[4] = {Vector3<float>::Constant(-kEndless), Vector3<float>::Constant(kEndless)};
     boxes[5] = {Vector3<float>::Constant(kNan), Vector3<float>::Constant(kNan)};
@@ -208,7 +208,7 @@ TEST(ReplaySelection, KeepsTheResolutionWhereAFewAreFarAway) {
 
 TEST(ReplaySelection, IsFiniteForNothingAndForAPoint) {
     const Vector3<float> point = Vector3<float>::Constant(5);
-    for (const Boxes& boxes : {Boxes{}, Boxes{{point, point}}}) {
+    for (const FrameBoxes& boxes : {FrameBoxes{}, FrameBoxes{{point, point}}}) {
         const ReplaySelection selection = selectForReplay(boxes, Aabb<float>(), 10);
         EXPECT_TRUE(selection.bounds.min().allFinite());
         EXPECT_TRUE(selection.bounds.max().allFinite());
