@@ -12,16 +12,18 @@
 namespace hashphase::demos {
 namespace {
 
-// Streams of this process, such as /dev/stderr and /dev/fd/3, are links to links there.
-bool isInProc(const std::filesystem::path& path) {
-    return path.string().starts_with("/proc/");
+// Streams of this process: /dev/fd/3, and /dev/stderr, which is a link to a link in /proc. What such a link names, as
+// "pipe:[7]", need be no path.
+bool isOpenStream(const std::filesystem::path& path) {
+    const std::string text = path.string();
+    return text.starts_with("/proc/") || text.starts_with("/dev/fd/");
 }
 
 std::filesystem::path behindLinks(std::filesystem::path path) {
     constexpr int kMostLinks = 40;  // as systems have it
     std::error_code ignored;
-    for (int i = 0; i < kMostLinks && !isInProc(path) && std::filesystem::is_symlink(path, ignored);
-         ++i) {
+    for (int i = 0;
+         i < kMostLinks && !isOpenStream(path) && std::filesystem::is_symlink(path, ignored); ++i) {
         path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
     }
     return path;
@@ -57,7 +59,7 @@ void ResultFile::open() {
         throw InputError(path_.string() + " is a folder, not a file.");
     }
     errno = 0;
-    if (isInProc(target_) || std::filesystem::is_other(status)) {
+    if (isOpenStream(target_) || std::filesystem::is_other(status)) {
         file_.open(target_, std::ios::binary | std::ios::app);
     } else {
         openPartial(status);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include <string>
 #include <thread>
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -154,6 +156,24 @@ TEST_F(ResultFiles, GoStraightToPipesAndDevices) {
         ResultFile full("/dev/full");
         EXPECT_EQ(messageOf<InputError>([&full] { writeNew(full); }),
                   "/dev/full cannot be written to its end; is the disk full?");
+    }
+}
+
+// As the shell names them: `--json >(gzip >r.gz)`, `--json /dev/fd/3 3>r`.
+TEST_F(ResultFiles, GoStraightToOpenStreams) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(pipe(ends.data()), 0);
+    const int opened = open(path_.c_str(), O_WRONLY | O_TRUNC);
+    for (const int stream : {ends[1], opened}) {
+        ResultFile file("/dev/fd/" + std::to_string(stream));
+        writeNew(file);
+    }
+    std::array<char, 4> taken{};
+    EXPECT_EQ(read(ends[0], taken.data(), taken.size()), 3);
+    EXPECT_STREQ(taken.data(), "new");
+    EXPECT_EQ(lseek(opened, 0, SEEK_END), 3) << "the same file";
+    for (const int stream : {ends[0], ends[1], opened}) {
+        close(stream);
     }
 }
 
