@@ -101,12 +101,13 @@ void ResultFile::putInPlace() {
     }
     requireGood();
     if (!partial_.empty()) {
+        const std::filesystem::path whole = std::exchange(partial_, {});
         std::error_code error;
-        std::filesystem::rename(partial_, target_, error);
+        std::filesystem::rename(whole, target_, error);
         if (error) {
-            throw InputError(path_.string() + " cannot be replaced: " + error.message() + ".");
+            throw InputError(path_.string() + " cannot be replaced: " + error.message() +
+                             "; the results are in " + whole.string() + ".");
         }
-        partial_.clear();
     }
 }
 

@@ -32,7 +32,8 @@ public:
     /// Throws InputError if bytes could not be written.
     void requireGood() const;
 
-    /// Closes the file and puts it in its place. Throws InputError if not all bytes could be written.
+    /// Closes the file and puts it in its place. Throws InputError if not all bytes could be written, or if the
+    /// place is not to be had: then all bytes stay in `<path>.partial`.
     void putInPlace();
 
     /// Calls writeTo(std::ostream&) and puts the file in its place; does nothing if there is none.

@@ -97,6 +97,19 @@ TEST_F(ResultFiles, LeaveTheOlderFileWhenTheDiskIsFull) {
     expectAsItWas();
 }
 
+TEST_F(ResultFiles, StayWhereTheyAreWhenTheirPlaceIsNotToBeHad) {
+    std::string message;
+    {
+        ResultFile file(path_);
+        std::filesystem::remove(path_);
+        std::filesystem::create_directory(path_);
+        message = messageOf<InputError>([&file] { writeNew(file); });
+    }
+    EXPECT_EQ(message,
+              path_ + " cannot be replaced: Is a directory; the results are in " + partial_ + ".");
+    EXPECT_EQ(readFile(partial_), "new");
+}
+
 TEST_F(ResultFiles, KeepTheRightsOfTheOlderFile) {
     std::filesystem::permissions(path_, std::filesystem::perms{0640});
     ResultFile file(path_);
