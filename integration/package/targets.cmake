@@ -26,16 +26,17 @@ else()
     set(HASHPHASE_COMPATIBILITY SameMajorVersion)
 endif()
 
-# A project that takes us in by add_subdirectory() or FetchContent, and sets neither a build type nor a level of
-# optimisation, would get libraries that are unoptimised and check preconditions, at many times the cost. They are
-# compiled as in a Release build instead.
+# Unoptimised libraries take 20 times as long. Within a project that sets no level of optimisation they are optimised
+# all the same: in Debug builds with assertions, and if the project sets no build type, as in a Release build.
 get_directory_property(options COMPILE_OPTIONS)
 set(levelOption "(^|[ ;])-O")
 if(MSVC)
     set(levelOption "(^|[ ;])[-/]O")
 endif()
 set(HASHPHASE_OPTIMISATION "")
-if(NOT multiConfig AND NOT CMAKE_BUILD_TYPE AND NOT "${CMAKE_CXX_FLAGS} ${options}" MATCHES "${levelOption}")
+if("${CMAKE_CXX_FLAGS} ${options}" MATCHES "${levelOption}")
+    # as the project says
+elseif(NOT multiConfig AND NOT CMAKE_BUILD_TYPE)
     set(HASHPHASE_OPTIMISATION -O2)
     if(MSVC)
         set(HASHPHASE_OPTIMISATION /O2)
@@ -51,6 +52,13 @@ if(NOT multiConfig AND NOT CMAKE_BUILD_TYPE AND NOT "${CMAKE_CXX_FLAGS} ${option
                 "${HASHPHASE_OPTIMISATION} and ${assertions}. Your own files, with the hashphase templates that "
                 "they use, are compiled without optimisation. Set the type: cmake -DCMAKE_BUILD_TYPE=Release, or "
                 "RelWithDebInfo, or Debug.")
+elseif(HASHPHASE_DEBUG_OPTIMISE AND NOT MSVC AND NOT CMAKE_CXX_FLAGS_DEBUG MATCHES "${levelOption}")
+    # MSVC's options for Debug, /RTC1, exclude /O2.
+    set(HASHPHASE_OPTIMISATION $<$<CONFIG:Debug>:-O2>)
+    if(multiConfig OR CMAKE_BUILD_TYPE STREQUAL "Debug")
+        message(STATUS "hashphase: the libraries are compiled with -O2 in Debug builds too; "
+                       "-DHASHPHASE_DEBUG_OPTIMISE=OFF leaves them unoptimised")
+    endif()
 endif()
 
 # Warnings, reproducible floating point and plain C++20 for a target of our own. The headers of

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Zlib
 #
-# cmake -DROOT=<repository> -DBINARY=<scratch folder> -DCOMPILER=<C++ compiler> -P check_untyped.cmake
+# cmake -DROOT=<repository> -DBINARY=<scratch folder> -DCOMPILER=<C++ compiler> -P check_optimisation.cmake
 #
 # A project that takes hashphase in by FetchContent and sets no build type gets optimised libraries without
-# assertions, and one warning that says so; unless it sets a type, a level of optimisation or HASHPHASE_ASSERTS.
+# assertions, and one warning that says so; unless it sets a type, a level of optimisation or HASHPHASE_ASSERTS. In a
+# Debug build it gets optimised libraries with assertions, unless it sets a level or HASHPHASE_DEBUG_OPTIMISE.
 # Configures, and builds nothing.
 
 cmake_minimum_required(VERSION 3.22)
@@ -55,5 +56,7 @@ expect(untyped "CMAKE_BUILD_TYPE is empty. The hashphase libraries are compiled 
        -O2 0)
 expect(asserting "The hashphase libraries are compiled with -O2 and with assertions." -O2 1 -DHASHPHASE_ASSERTS=ON)
 expect(levelled "" -O1 1 -DCMAKE_CXX_FLAGS=-O1)
-expect(debug "" "" 1 -DCMAKE_BUILD_TYPE=Debug)
 expect(release "" -O3 0 -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O3)
+expect(debug "" -O2 1 -DCMAKE_BUILD_TYPE=Debug)
+expect(debug-levelled "" -Og 1 -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-Og)
+expect(debug-unoptimised "" "" 1 -DCMAKE_BUILD_TYPE=Debug -DHASHPHASE_DEBUG_OPTIMISE=OFF)
