@@ -20,6 +20,7 @@
 #include <integration/ai/zones.hpp>
 #include <integration/bullet/bullet_parallel_for.hpp>
 #include <integration/bullet/conversions.hpp>
+#include <integration/bullet/debug_draw.hpp>
 #include <integration/bullet/group_filter.hpp>
 #include <integration/bullet/origin_shift.hpp>
 #include <integration/bullet/shape_pick.hpp>

@@ -28,6 +28,31 @@ TEST(TuningPage, CostIsPrinted) {
                 "100 changed, 0 at rest, 294 boxes tested, 3 pairs watched, 100 share a cell\n");
 }
 
+struct LineCounter : btIDebugDraw {
+    int lines = 0;
+
+    void drawLine(const btVector3&, const btVector3&, const btVector3&) override { ++lines; }
+    void drawContactPoint(const btVector3&, const btVector3&, btScalar, int,
+                          const btVector3&) override {}
+    void reportErrorWarning(const char*) override {}
+    void draw3dText(const btVector3&, const char*) override {}
+    void setDebugMode(int) override {}
+    int getDebugMode() const override { return DBG_NoDebug; }
+};
+
+TEST(TuningPage, CellsAreDrawn) {
+    LineCounter drawer;
+    FallingSphere sphere;
+    SpatialHashBroadphase broadphase;
+    btDiscreteDynamicsWorld world(&sphere.dispatcher, &broadphase, &sphere.solver,
+                                  &sphere.configuration);
+    world.setDebugDrawer(&drawer);
+    world.addRigidBody(&sphere.body);
+#include <tuning_2.inl>
+    EXPECT_EQ(drawer.lines, 12) << "of the sphere's box";
+    world.removeRigidBody(&sphere.body);
+}
+
 /// How many boxes are compared for each of 3,000 cubes of a metre, four of which overlap each.
 double testsOfEach(double cellSize) {
     SpatialHashConfig config;
@@ -51,11 +76,11 @@ TEST(TuningPage, CostTellsOfCellsThatAreTooLarge) {
 
 TEST(TuningPage, SettingsAreTaken) {
     {
-#include <tuning_2.inl>
+#include <tuning_3.inl>
         EXPECT_EQ(SpatialHashBroadphase(config).grid().cellSize(), 4);
     }
     {
-#include <tuning_3.inl>
+#include <tuning_4.inl>
         for (const SpatialHashConfig& each : {config, SpatialHashConfig()}) {
             FallingSphere sphere;
             btGhostObject ghosts[2];
@@ -73,7 +98,7 @@ TEST(TuningPage, SettingsAreTaken) {
             }
         }
     }
-#include <tuning_4.inl>
+#include <tuning_5.inl>
     SpatialHashBroadphase(config).calculateOverlappingPairs(nullptr);
     EXPECT_TRUE(config.parallelFor != nullptr);
 }
