@@ -2,29 +2,28 @@
 # shellcheck shell=bash
 #
 # Sourced by demos/run, tests/run, integration/package/make-deb and others: from a fresh machine to
-# an up-to-date build.
-# Everything is said on stderr, so that the output of the program that is run stays clean.
+# an up-to-date build. Its messages go to stderr, so that stdout is the program's alone.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
-# Tools by the command that must be there, libraries by their Debian package: what the library and
-# `hashphase compare` need.
+# What the library and `hashphase compare` need: tools as <command>:<Debian package>, libraries as Debian
+# packages.
 tools=(cmake:cmake ninja:ninja-build c++:g++ pkg-config:pkg-config)
 libraries=(libbullet-dev libeigen3-dev libcli11-dev nlohmann-json3-dev libsqlite3-dev)
 
-# What may be missing.
+# These may be missing.
 optional_tools=()
 optional_libraries=()
 
-# need <part>...: what a part needs beside these.
+# need <part>...: adds what a part needs.
 need() {
     local part
     for part; do
         case $part in
         bullet-files) libraries+=(libbullet-extras-dev) ;; # compare --file level.bullet
-        charts) optional_tools+=(npm:npm) ;;               # pages have tables without
+        charts) optional_tools+=(npm:npm) ;;               # without it, pages have tables only
         mpi) libraries+=(libopenmpi-dev) tools+=(mpirun:openmpi-bin) ;; # hashphase::mpi
-        viewer)                                            # draws on the processor where there is no GPU
+        viewer)                                            # draws on the processor if there is no GPU
             optional_libraries+=(libtbb-dev libglfw3-dev libimgui-dev libepoxy-dev libstb-dev libegl1
                 libegl-mesa0 libgl1-mesa-dri)
             ;;
@@ -42,7 +41,7 @@ say() {
     printf '%s: %s\n' "${script:-setup}" "$*" >&2
 }
 
-# Prints the packages of those tools that are missing, one a line.
+# Prints the packages of the missing tools among these, one a line.
 missing_tools() {
     local tool
     for tool; do
@@ -50,7 +49,7 @@ missing_tools() {
     done
 }
 
-# Prints those of the packages that are missing, one a line.
+# Prints the missing packages among these, one a line.
 missing_libraries() {
     local library status
     for library; do
@@ -59,13 +58,13 @@ missing_libraries() {
     done
 }
 
-# Prints the packages that are missing, one a line.
+# Prints all missing packages, one a line.
 missing_packages() {
     missing_tools "${tools[@]}"
     missing_libraries "${libraries[@]}"
 }
 
-# Prints the optional packages that are missing and that this system offers, one a line.
+# Prints the missing optional packages that this system offers, one a line.
 missing_options() {
     local package
     for package in $(missing_tools "${optional_tools[@]}") \
@@ -76,13 +75,13 @@ missing_options() {
     done
 }
 
-# Installs what is missing, where that is allowed without a question; otherwise says which one
-# command is needed and ends with status 2. Goes on without what is optional.
+# Installs missing packages if no password is needed. Otherwise prints the command that does, and exits with
+# status 2, unless only optional packages are missing.
 install_missing_packages() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
-        say "this is no Debian or Ubuntu: please see to CMake 3.22, Ninja, a C++20 compiler," \
-            "pkg-config, Bullet 3.05, Eigen 3, CLI11, nlohmann-json and SQLite, and, for what needs them," \
-            "Bullet's world importer, GoogleTest, TBB and GMP; CMake tells what it cannot find"
+        say "this system is not Debian or Ubuntu, so nothing is installed. Install CMake 3.22, Ninja, a C++20" \
+            "compiler, pkg-config, Bullet 3.05, Eigen 3, CLI11, nlohmann-json and SQLite; for the tests also" \
+            "Bullet's world importer, GoogleTest, TBB and GMP. CMake names what it does not find"
         return
     fi
     local missing=() options=() apt=(apt-get)
@@ -91,39 +90,39 @@ install_missing_packages() {
     ((${#missing[@]} + ${#options[@]})) || return 0
     if [[ $EUID != 0 ]]; then
         if ! sudo -n true 2>/dev/null; then
-            say "some packages are missing; install them and try again:"
+            say "packages are missing, and installing them needs a password. Run this, and try again:"
             say "    sudo apt-get install ${missing[*]} ${options[*]}"
             ((${#missing[@]} == 0)) || exit 2
-            say "going on without"
+            say "continuing without them: they are optional"
             return 0
         fi
         apt=(sudo -n env DEBIAN_FRONTEND=noninteractive apt-get)
     fi
     export DEBIAN_FRONTEND=noninteractive
-    # Lists that cannot be renewed may still be good enough; the installation tells.
+    # Old lists may be good enough: the installation shows.
     "${apt[@]}" -o DPkg::Lock::Timeout=300 -q update >&2 </dev/null ||
-        say "the package lists could not be renewed"
+        say "apt-get update failed; trying with the old package lists"
     install_packages "${missing[@]}" || {
-        say "installing failed; make this work and try again:"
+        say "apt-get failed, see above. Make this work, and try again:"
         say "    apt-get install ${missing[*]}"
         exit 2
     }
-    # New lists may offer more.
+    # The new lists may offer more.
     mapfile -t options < <(missing_options)
-    install_packages "${options[@]}" || say "going on without ${options[*]}"
+    install_packages "${options[@]}" || say "continuing without ${options[*]}: optional"
 }
 
-# install_packages [<package>...]: by the caller's `apt`.
+# install_packages [<package>...]: runs the caller's `apt`.
 install_packages() {
     (($#)) || return 0
-    say "installing $* (a minute or so)"
+    say "installing $* (about a minute)"
     reconfigure=1 # which may find more now
     "${apt[@]}" -o DPkg::Lock::Timeout=300 -q install -y --no-install-recommends "$@" \
         >&2 </dev/null
 }
 
-# build_preset <preset> [<target>...]: configures when need be, or when `reconfigure` is set, and
-# builds. A build folder that has tests keeps them.
+# build_preset <preset> [<target>...]: configures if needed, or if `reconfigure` is set, and builds. A build
+# folder with tests keeps them.
 build_preset() (
     preset=$1
     shift

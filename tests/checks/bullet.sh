@@ -56,7 +56,7 @@ build_newest() {
     }
     cmake --build "$build" --target "${programs[@]/%/-tests}" >&2
     if ninja -C "$build" -t deps | grep -E '^ */usr/include/(bullet|eigen3)/' >&2; then
-        say "these headers of the system were compiled in place of the newest"
+        say "these headers of the system were compiled instead of the newest"
         return 1
     fi
 }

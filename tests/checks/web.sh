@@ -95,7 +95,7 @@ web_build() {
 
 check_web() {
     if [[ $root == *' '* ]]; then
-        say "web needs a path without spaces, for the sources of GMP are configured in it"
+        say "the path of the repository has spaces, which configuring GMP does not support: move it"
         return 1
     fi
     web_once libcxx web_libcxx

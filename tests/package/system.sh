@@ -19,7 +19,7 @@ make_system() {
     # shellcheck disable=SC2016 # apt-get fills it in
     mirror=$(apt-get indextargets --format '$(REPO_URI)' "Codename: $release" "Component: main" | head -n 1)
     if [[ ! $mirror ]]; then
-        say "this system's apt does not know $release: add it to the sources of apt"
+        say "this system's apt does not know $release: add it to apt's sources"
         exit 2
     fi
     if [[ ${FRESH_SYSTEM_ALONE-} != yes ]]; then
