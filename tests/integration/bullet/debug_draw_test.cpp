@@ -23,9 +23,9 @@
 namespace hashphase::test {
 namespace {
 
-const btVector3 kLightBlue(btScalar(0.34), btScalar(0.71), btScalar(0.91));
-const btVector3 kGrey(btScalar(0.66), btScalar(0.69), btScalar(0.75));
-const btVector3 kRed(btScalar(0.84), btScalar(0.37), btScalar(0));
+const btVector3 kMobileColour(btScalar(0.34), btScalar(0.71), btScalar(0.91));
+const btVector3 kRestingColour(btScalar(0.66), btScalar(0.69), btScalar(0.75));
+const btVector3 kUnfiledColour(btScalar(0.84), btScalar(0.37), btScalar(0));
 
 constexpr std::size_t kLinesOfABox = 12;
 
@@ -212,7 +212,7 @@ TEST_F(DrawingCells, DrawsTheBoxOfAProxyInNoCell) {
     EXPECT_EQ(drawn.unfiled, 1U);
     ASSERT_EQ(all.size(), drawn.cells + 1);
     EXPECT_TRUE(all.back().box.isApprox(ground));
-    EXPECT_EQ(all.back().colour, kRed);
+    EXPECT_EQ(all.back().colour, kUnfiledColour);
 }
 
 TEST_F(DrawingCells, DrawsTheBoxesOfAllProxiesIfAsked) {
@@ -242,10 +242,10 @@ TEST_F(DrawingCells, DrawsTheBoxesOfAllProxiesIfAsked) {
                   1);
     };
     for (const Aabb<btScalar>& box : boxes) {
-        expectDrawn(box, kLightBlue);
+        expectDrawn(box, kMobileColour);
     }
     for (const Aabb<btScalar>& box : fixed) {
-        expectDrawn(box, kGrey);
+        expectDrawn(box, kRestingColour);
     }
 }
 
