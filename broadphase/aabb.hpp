@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Axis-aligned bounding boxes, and the one predicate that decides every pair.
+// Axis-aligned bounding boxes, and overlaps(), the test for every pair.
 //
 //     const Aabb<float> crate = boxAround<float>({0, 1, 0}, {0.5F, 1, 0.5F});
 //     if (overlaps(crate, boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}))) { ... }
 //
 // Units    metres, or any other unit of length used throughout
-// Closed   Boxes contain their faces: boxes that touch overlap, as in Bullet.
+// Closed   Boxes contain their faces, as in Bullet: touching boxes overlap.
 // NaN      A box with a NaN coordinate overlaps nothing.
 // Cost     O(1), no allocation
 // Threads  values and pure functions; use them from any thread
@@ -32,28 +32,28 @@ namespace hashphase {
 template <class Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 
-/// The box from min() to max(), both inclusive. It may be infinite or inverted (min > max), as Aabb<Scalar>() is; the
-/// predicates below keep their exact meaning.
+/// A box from min() to max(), both inclusive. It may be infinite, or inverted (min > max) like Aabb<Scalar>(). The
+/// predicates below apply exactly to such boxes too.
 template <class Scalar>
 using Aabb = Eigen::AlignedBox<Scalar, 3>;
 
-/// Returns the box from `min` to `max` [m], for example boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}). It is inverted
-/// where min > max.
+/// Returns the box from `min` to `max` [m], for example boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}). If min > max on
+/// an axis, the box is inverted.
 template <class Scalar>
 [[nodiscard]] inline Aabb<Scalar> boxBetween(const Vector3<Scalar>& min,
                                              const Vector3<std::type_identity_t<Scalar>>& max) {
     return {min, max};
 }
 
-/// Returns the box that reaches `halfExtents` [m] to either side of `center` [m], within rounding. Negative half
-/// extents make an inverted box.
+/// Returns the box from `center` - `halfExtents` to `center` + `halfExtents` [m], rounded. Negative half extents make
+/// an inverted box.
 template <class Scalar>
 [[nodiscard]] inline Aabb<Scalar> boxAround(
     const Vector3<Scalar>& center, const Vector3<std::type_identity_t<Scalar>>& halfExtents) {
     return {center - halfExtents, center + halfExtents};
 }
 
-/// Returns the cube around a ball: boxAround() with the radius [m] on every axis.
+/// Returns the cube around a ball: `radius` [m] is the half extent on every axis.
 template <class Scalar>
 [[nodiscard]] inline Aabb<Scalar> boxAround(const Vector3<Scalar>& center,
                                             std::type_identity_t<Scalar> radius) {
@@ -70,7 +70,7 @@ template <class Scalar>
 }
 
 /// True when the closed boxes a and b share a point: a.min <= b.max and b.min <= a.max on every axis. False when any
-/// of the twelve numbers is NaN.
+/// of the twelve coordinates is NaN.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool overlaps(const Aabb<Scalar>& a,
                                                             const Aabb<Scalar>& b) noexcept {
@@ -85,14 +85,15 @@ template <class Scalar>
             (bMin[1] <= aMax[1]) & (aMin[2] <= bMax[2]) & (bMin[2] <= aMax[2])) != 0;
 }
 
-/// True when the numbers have the same bits: -0 differs from 0, and a NaN equals itself.
+/// True when a and b have the same bits: -0 differs from 0, and a NaN equals itself.
 template <std::floating_point Scalar>
 [[nodiscard]] inline bool isSameBits(Scalar a, Scalar b) noexcept {
     using Bits = std::conditional_t<sizeof(Scalar) == 4, std::uint32_t, std::uint64_t>;
     return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
-/// True when both boxes have the same bits. One by one: wider reads would wait for recent writes.
+/// True when all six coordinates have the same bits. The code compares single numbers, because wider reads would wait
+/// for recent writes.
 template <class Scalar>
 [[nodiscard]] inline bool isSameBits(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
     const Scalar* aMin = a.min().data();
@@ -106,7 +107,7 @@ template <class Scalar>
 
 namespace detail {
 
-/// Eigen's allFinite() and hasNaN(), correct with -ffast-math too.
+/// Like Eigen's allFinite() and hasNaN(), but also correct with -ffast-math.
 template <class Scalar>
 [[nodiscard]] inline bool areFinite(const Vector3<Scalar>& point) noexcept {
     return isFinite(point[0]) && isFinite(point[1]) && isFinite(point[2]);

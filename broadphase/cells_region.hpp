@@ -11,23 +11,23 @@
 
 namespace hashphase {
 
-/// Every proxy whose box touches a cell that a ball's box touches: an estimate of the proxies in the ball, without
-/// distances. Key: 0.
+/// Finds every proxy whose box touches a cell that the ball's bounding box touches. This estimates the proxies in the
+/// ball, without distances. Key: 0.
 ///
 ///     CollectCount count;
 ///     grid.visit(CellsRegion<float>(center, 20, grid.cellSize()), count);
 ///
-/// Finds every proxy that PositionRegion and SphereRegion find. Other proxies are, within rounding, nearer than
-/// radius + cellSize on each axis: at most sqrt(3) * (radius + cellSize) away.
+/// Finds every proxy that a PositionRegion or SphereRegion of the ball finds. Apart from rounding, other proxies
+/// found are nearer to the centre than radius + cellSize on each axis: at most sqrt(3) * (radius + cellSize) away.
 ///
 /// Source: Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005,
-/// "AI proximity decisions". (The loop there omits the last cells.)
+/// "AI proximity decisions". (The paper's loop omits the last cells.)
 template <class Scalar>
 class CellsRegion {
 public:
-    /// The ball has `center` and `radius` [m]. Cells are cubes with corners at multiples of `cellSize` [m]. A cell
-    /// size of 0 or less, NaN or infinity means the ball's box itself. The region is empty for a negative or NaN
-    /// radius, or a centre that is not finite.
+    /// The ball has `center` and `radius` [m]. Cells are cubes with corners at multiples of `cellSize` [m]. If
+    /// `cellSize` is 0 or less, NaN or infinite, the region is the ball's bounding box. If the radius is negative or
+    /// NaN, or the centre is not finite, the region is empty.
     CellsRegion(const Vector3<Scalar>& center, Scalar radius, Scalar cellSize)
         : bounds_(PositionRegion<Scalar>(center, radius).bounds()) {
         const bool hasCells = cellSize > 0 && detail::isFinite(cellSize);
@@ -36,7 +36,7 @@ public:
             Scalar& high = bounds_.max()[axis];
             const Scalar lowBorder = std::floor(low / cellSize) * cellSize;
             const Scalar highBorder = (std::floor(high / cellSize) + 1) * cellSize;
-            // Rounded outward; numbers far too large for such cells give a NaN.
+            // Rounds outward. A NaN border changes nothing.
             low = lowBorder < low ? lowBorder : low;
             high = highBorder > high ? highBorder : high;
         }
@@ -46,7 +46,7 @@ public:
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         return overlaps(bounds_, box) ? Scalar(0) : Scalar(-1);
     }
-    /// The box of all these cells [m]; NaN when the region is empty.
+    /// Returns the box around all cells of the region [m]; NaN if the region is empty.
     [[nodiscard]] const Aabb<Scalar>& bounds() const noexcept { return bounds_; }
 
 private:

@@ -3,18 +3,18 @@
 
 // Collectors decide what a query keeps. A collector has two members:
 //
-//   add(id, key)   takes a proxy in the region; each proxy at most once
-//   limit()        returns the largest key still wanted; below zero the query ends
+//   add(id, key)   receives a proxy in the region, each proxy at most once
+//   limit()        returns the largest key still wanted; a negative limit ends the query
 //
 //     std::vector<ProxyId> found;
 //     CollectAll all(found);
 //     grid.visit(BoxRegion<float>{box}, all);  // the answer is in `found`
 //
-// Use      Pass a variable, which holds the answer after the query. It serves one query on one thread.
-// Keys     The region defines them (regions.hpp): 0, a squared distance [m^2], or a fraction of a way.
-// Own      Any class with these members is a collector. add() gets keys of the grid's Scalar; limit() may return
-//          float or double. See Callbacks in grid.hpp for collectors that change the grid.
-// Filters  CollectIf (proxy_filter.hpp) removes proxies before another collector sees them.
+// Use      Pass a variable: after the query, it holds the answer. It serves one query at a time, on one thread.
+// Keys     The region defines the keys (regions.hpp): 0, a squared distance [m^2], or a fraction of a path.
+// Own      Any class with these members is a collector. add() receives keys of the grid's Scalar; limit() may return
+//          float or double. For collectors that change the grid, see Callbacks in grid.hpp.
+// Filters  CollectIf (proxy_filter.hpp) removes proxies before another collector receives them.
 
 #include <broadphase/proxy_id.hpp>
 
@@ -29,8 +29,8 @@
 
 namespace hashphase {
 
-/// Appends every proxy found to the caller's vector, which must outlive the collector. The order follows the grid's
-/// memory; sort if it matters.
+/// Appends every proxy found to the caller's vector, which must outlive the collector. The order depends on the
+/// grid's memory layout; sort if order matters.
 class CollectAll {
 public:
     explicit CollectAll(std::vector<ProxyId>& found) noexcept : found_(&found) {}
@@ -64,8 +64,8 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Ends the query at the first proxy found: "is there any?" at the least cost. Which one depends on the grid's
-/// memory; CollectClosest finds the nearest.
+/// Ends the query at the first proxy found: the cheapest test whether there is any. Which proxy is found depends on
+/// the grid's memory layout; CollectClosest finds the nearest.
 class CollectAny {
 public:
     template <class Scalar>
@@ -76,18 +76,18 @@ public:
     [[nodiscard]] double limit() const noexcept {
         return found_.isNull() ? std::numeric_limits<double>::infinity() : -1.0;
     }
-    /// The proxy found; null when there is none.
+    /// The proxy found; null if there is none.
     [[nodiscard]] ProxyId found() const noexcept { return found_; }
 
 private:
     ProxyId found_;
 };
 
-/// Keeps the proxy with the smallest key; of equal keys, the smallest id. The search shrinks with each find. A
+/// Keeps the proxy with the smallest key; among equal keys, the smallest id. Each closer proxy shrinks the search. A
 /// SphereRegion gives the nearest box, a RayRegion the first box on the ray:
 ///
 ///     CollectClosest<float> first;
-///     grid.visit(RayRegion<float>(from, to), first);  // first.key(): the fraction of the way
+///     grid.visit(RayRegion<float>(from, to), first);  // first.key(): the fraction of the ray
 template <class Scalar>
 class CollectClosest {
 public:
@@ -97,11 +97,11 @@ public:
             key_ = key;
         }
     }
-    /// The smallest key so far.
+    /// The smallest key so far; infinity if none.
     [[nodiscard]] Scalar limit() const noexcept { return key_; }
-    /// The closest proxy; null when none was found.
+    /// The closest proxy; null if none was found.
     [[nodiscard]] ProxyId found() const noexcept { return found_; }
-    /// The key of found() (see the region); infinity when none was found.
+    /// The key of found(), as the region defines it; infinity if none was found.
     [[nodiscard]] Scalar key() const noexcept { return key_; }
 
 private:
@@ -118,8 +118,8 @@ struct KeyedProxy {
     friend constexpr auto operator<=>(const KeyedProxy&, const KeyedProxy&) = default;
 };
 
-/// Keeps the `count` proxies with the smallest keys; of equal keys, the smallest ids. The search shrinks with each
-/// find. Cost: O(log count) for each proxy kept.
+/// Keeps the `count` proxies with the smallest keys; among equal keys, the smallest ids. Once `count` proxies are
+/// found, each closer proxy shrinks the search. Cost: O(log count) for each proxy kept.
 ///
 ///     std::vector<KeyedProxy<float>> nearest;
 ///     CollectNearest<float> five(5, nearest);
@@ -128,7 +128,7 @@ struct KeyedProxy {
 template <class Scalar>
 class CollectNearest {
 public:
-    /// Keeps them in `nearest`, which is emptied here and must outlive the collector.
+    /// Clears `nearest`, and keeps the proxies in it. `nearest` must outlive the collector.
     CollectNearest(std::size_t count, std::vector<KeyedProxy<Scalar>>& nearest)
         : count_(count), nearest_(&nearest) {
         nearest_->clear();
@@ -146,7 +146,7 @@ public:
         nearest_->push_back(found);
         std::push_heap(nearest_->begin(), nearest_->end());
     }
-    /// Infinity until `count` proxies are kept, then their largest key.
+    /// Infinity until `count` proxies are kept; afterwards their largest key.
     [[nodiscard]] Scalar limit() const noexcept {
         if (nearest_->size() < count_) {
             return std::numeric_limits<Scalar>::infinity();
@@ -154,7 +154,7 @@ public:
         return count_ == 0 ? Scalar(-1) : nearest_->front().key;
     }
 
-    /// Sorts the vector, nearest first, and returns it. Call it once, after the query: until then the vector is a
+    /// Sorts the vector by ascending key and returns it. Call this once, after the query: before, the vector is a
     /// heap. Cost: O(count log count).
     std::span<const KeyedProxy<Scalar>> sort() {
         std::sort_heap(nearest_->begin(), nearest_->end());
@@ -163,15 +163,15 @@ public:
 
 private:
     std::size_t count_;
-    std::vector<KeyedProxy<Scalar>>* nearest_;  // a heap, the farthest on top
+    std::vector<KeyedProxy<Scalar>>* nearest_;  // a heap with the largest key on top
 };
 
-/// Sets a bit for every proxy found: bit i % 64 of word i / 64 for ProxyId::index i. The cheapest list of many
-/// proxies. Grid::idAt() returns the id of an index.
+/// Sets a bit for every proxy found: bit i % 64 of word i / 64, where i is ProxyId::index. This is the cheapest list
+/// of many proxies. Grid::idAt() returns the id of an index.
 class CollectBits {
 public:
-    /// Sets bits in the caller's vector, which grows as needed, and keeps bits already set. Nothing else may resize
-    /// it meanwhile.
+    /// Sets bits in the caller's vector, and enlarges it as needed. Bits already set stay set. No other code may
+    /// resize the vector while the collector is in use.
     explicit CollectBits(std::vector<std::uint64_t>& bits) noexcept
         : bits_(&bits), words_(bits.data()), wordCount_(bits.size()) {}
 

@@ -20,26 +20,26 @@ namespace hashphase {
 /// How much of a box must be in a volume: any point (touching), or the whole box (inside).
 enum class Containment : std::uint8_t { touching, inside };
 
-/// Which boxes touch a volume. exact: boxes that share a point with it. byPlanes: faster, but finds a few more boxes
-/// near the volume's edges. It rejects only boxes wholly outside one plane: of the volume, or of its outline along
-/// the x axis.
+/// Which boxes touch a volume. exact: boxes that share a point with the volume. byPlanes: faster, but finds a few
+/// more boxes near the volume's edges. byPlanes rejects only boxes wholly outside a plane of the volume, or of the
+/// volume's outline along the x axis. Containment::inside ignores Touch.
 enum class Touch : std::uint8_t { exact, byPlanes };
 
-/// Every box that touches a convex volume, or lies wholly inside. The volume is the set of points p with
-/// plane.signedDistance(p) >= 0 for each plane. Key: 0. Boxes in cells wholly inside need no test. Cost: as
-/// Grid::visit().
+/// Finds every box that touches a convex volume, or that lies wholly inside it (see Containment). The volume is the
+/// set of points p with plane.signedDistance(p) >= 0 for each plane. Key: 0. Boxes in cells wholly inside the volume
+/// need no test. Cost: as Grid::visit().
 ///
-/// Closed, and rounding favours a hit: by about 1e-6 of the coordinates in single precision, 1e-9 in double. Without
-/// planes, the volume is all of space. A volume without a point, or with a plane that is NaN or has an infinite
-/// normal, is empty.
+/// The volume contains its surface. Rounding favours a hit: by about 1e-6 of the coordinates in single precision,
+/// 1e-9 in double. Without planes, the volume is all of space. A volume is empty if it contains no point, or if a
+/// plane has a NaN or an infinite normal.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT ConvexRegion {
 public:
     using Plane = Eigen::Hyperplane<Scalar, 3>;
     static constexpr std::size_t kMostPlanes = detail::kMostOwnPlanes;
 
-    /// The planes face inwards, with normals of any length. Asserted: at most kMostPlanes planes. Cost: some
-    /// microseconds for a frustum; grows with the fourth power of the number of planes.
+    /// Plane normals point inwards; any length is valid. Asserted: at most kMostPlanes planes. Cost: O(p^4) for p
+    /// planes; some microseconds for a frustum.
     explicit ConvexRegion(std::span<const detail::Plane<Scalar>> planes,
                           Containment containment = Containment::touching,
                           Touch touch = Touch::exact);
@@ -53,32 +53,33 @@ public:
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept;
 
-    /// True when no box has a key.
+    /// True when the region contains no box.
     [[nodiscard]] bool isEmpty() const noexcept { return isEmpty_; }
 
-    /// True when `other` is empty, or lies inside this volume, at least `margin` [m] from each of its planes. False
-    /// if rounding leaves doubt, or `other` has no corners.
+    /// True when `other` is empty, or lies inside this volume, at least `margin` [m] from each plane of this volume.
+    /// False if rounding leaves doubt, or if the corners of `other` cannot be computed.
     [[nodiscard]] bool contains(const ConvexRegion& other, Scalar margin = 0) const;
 
-    /// Returns the volume with its planes moved outwards by `distance` [m]. It holds every point within that distance
-    /// of this volume.
+    /// Returns the volume with its planes moved outwards by `distance` [m]. The result contains every point within
+    /// `distance` of this volume.
     [[nodiscard]] ConvexRegion grownBy(Scalar distance) const;
 
-    /// Returns the same volume with Touch::exact.
+    /// Returns this volume with Touch::exact.
     [[nodiscard]] ConvexRegion exact() const;
 
-    /// True when both have equal planes in the same order, equal Containment and equal Touch. False with a NaN.
+    /// True when a and b have equal planes in the same order, equal Containment and equal Touch. Volumes made empty
+    /// by a NaN may compare equal.
     friend bool operator==(const ConvexRegion& a, const ConvexRegion& b) noexcept {
         return a.isSameAs(b);
     }
 
-    /// For grids: the planes given, and more planes that bound the volume for boxes.
+    /// For grids: the given planes, and more planes that reject outside boxes.
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:
-    // As the library stores them: unaligned.
+    // A plane as the library stores it: unaligned.
     using OwnPlane = detail::Plane<Scalar>;
-    // One more than allowed, which the constructor asserts.
+    // One plane too many fits, for the constructor's assertion.
     using PlaneList = detail::FixedList<OwnPlane, kMostPlanes + 1>;
 
     ConvexRegion(const PlaneList& planes, Containment containment, Touch touch)

@@ -3,29 +3,30 @@
 
 // Diagnostics: messages about bad data, and assertions about misuse.
 //
-// Threads   Any thread may call the handlers. Replace them before other threads start.
-// Errors    A message handler must not throw. An assertion handler may throw, to escape from misuse.
-// Messages  Bad data, such as a box with a NaN, is set aside and reported once, in a sentence. By default, on stderr.
-// Misuse    A broken precondition is asserted. The default handler writes the sentence and source line to stderr, and
-//           aborts. Assertions exist if HASHPHASE_ENABLE_ASSERTS is 1: in all build types except Release,
-//           MinSizeRel and none, unless CMake's HASHPHASE_ASSERTS is ON or OFF.
+// Threads   Any thread may call the handlers. Set your handlers before other threads start.
+// Errors    A message handler must not throw. An assertion handler may throw, to leave the misused function.
+// Messages  Bad data, such as a box with a NaN, is ignored. Each object reports its first case to the message
+//           handler, by default to stderr.
+// Misuse    A broken precondition is asserted. The default handler writes the sentence and the source line to stderr,
+//           and aborts. Assertions exist if HASHPHASE_ENABLE_ASSERTS is 1: by default in all build types except
+//           Release, MinSizeRel and none. CMake's HASHPHASE_ASSERTS=ON or OFF overrides the default.
 
 #include <broadphase/export.hpp>
 
 namespace hashphase {
 
-/// Receives one message: a full sentence without a trailing newline.
+/// Receives one message: full sentences without a trailing newline.
 using MessageHandler = void (*)(const char* message);
 
-/// Receives a broken precondition: its text, a sentence that states what is right, and the source line. If the
-/// handler returns, the program continues at the caller's risk.
+/// Receives a broken precondition: its source text, a sentence about the fault and its remedy, and the source line.
+/// If the handler returns, the program continues at the caller's risk.
 using AssertHandler = void (*)(const char* condition, const char* sentence, const char* file,
                                int line);
 
-/// Replaces the message handler; nullptr restores the default. Returns the previous one.
+/// Replaces the message handler; nullptr restores the default. Returns the previous handler.
 HASHPHASE_BROADPHASE_EXPORT MessageHandler setMessageHandler(MessageHandler handler) noexcept;
 
-/// Replaces the assertion handler; nullptr restores the default. Returns the previous one.
+/// Replaces the assertion handler; nullptr restores the default. Returns the previous handler.
 HASHPHASE_BROADPHASE_EXPORT AssertHandler setAssertHandler(AssertHandler handler) noexcept;
 
 namespace detail {

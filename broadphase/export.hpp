@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Macros that mark what a shared library exports; everything else is hidden. Each library has a header like this one,
-// with its own macros. CMake and pkg-config set HASHPHASE_SHARED to 1 for shared libraries.
-// hashphase_<component>_EXPORTS is set while that library is compiled.
+// Macros that mark the exported symbols of a shared library; all other symbols are hidden. Each library has its own
+// export.hpp with its own macros. CMake and pkg-config set HASHPHASE_SHARED to 1 for shared libraries. CMake defines
+// hashphase_<component>_EXPORTS while it compiles a library.
 //
-// HASHPHASE_<COMPONENT>_EXPORT           on an exported function or class
-// HASHPHASE_<COMPONENT>_TEMPLATE_EXPORT  on a class template that a library instantiates; HASHPHASE_INSTANCE_EXPORT
-//                                        on the instantiation, for MSVC
-// HASHPHASE_ONE_FOR_ALL                  on a thread_local variable in a header that all libraries of a program share
-// HASHPHASE_SHARES_VARIABLES             1 if they can share it; with DLLs, 0: a function of the owner returns it
-// HASHPHASE_ASK_LINKER_FOR(x)            makes linking fail without the variable hashphase::x, a const char of the
-//                                        grid's library, even if the compiler drops unused references
+// HASHPHASE_<COMPONENT>_EXPORT           marks an exported function or class
+// HASHPHASE_<COMPONENT>_TEMPLATE_EXPORT  marks a class template that a library instantiates
+// HASHPHASE_INSTANCE_EXPORT              marks the template's instantiation, for MSVC
+// HASHPHASE_ONE_FOR_ALL                  marks a thread_local variable in a header, one for all libraries of a
+//                                        program
+// HASHPHASE_SHARES_VARIABLES             1 if libraries can share such a variable; 0 with DLLs: a function of one
+//                                        library returns the variable
+// HASHPHASE_ASK_LINKER_FOR(x)            with MSVC, makes linking fail if the grid's library does not define the
+//                                        const char hashphase::x; works even if the compiler drops unused references
 
-// Every public header includes this one first, before code that older standards reject.
+// Public headers include this header before code that older standards reject.
 #if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L
 #error "hashphase needs C++20. Compile with -std=c++20 or /std:c++20, or ask CMake for cxx_std_20."
 #endif
 
-// Unset macros become 0, so that every #if tests a defined macro.
+// Defines unset macros as 0, so that every #if tests a defined macro.
 #ifndef HASHPHASE_SHARED
 #define HASHPHASE_SHARED 0
 #endif

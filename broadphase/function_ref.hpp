@@ -4,8 +4,8 @@
 // A reference to a function, for parameters: cheaper than std::function, which owns a copy.
 //
 //     void visitAll(FunctionRef<void(ProxyId)> visit);
-//     visitAll([&](ProxyId id) { ... });                     // right: the lambda lives until the call ends
-//     FunctionRef<void(ProxyId)> visit = [&](ProxyId) { };   // wrong: the lambda is gone after this line
+//     visitAll([&](ProxyId id) { ... });                     // right: the lambda exists until the call ends
+//     FunctionRef<void(ProxyId)> visit = [&](ProxyId) { };   // wrong: the lambda is destroyed after this line
 
 #include <broadphase/core/compiler.hpp>
 #include <broadphase/export.hpp>
@@ -20,11 +20,12 @@ template <class Signature>
 class FunctionRef;
 
 /// A reference to a lambda, a function or a function object. For parameters only: it must not outlive the callable.
-/// Keep a lambda itself, as `const auto`. Two pointers; never allocates; never empty.
+/// To store a lambda, declare it as `const auto`. A FunctionRef holds two pointers, never allocates, and is never
+/// empty.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
 public:
-    /// Refers to `callable`, which takes these arguments and returns a Result, or a value that converts to it.
+    /// Refers to `callable`, which takes these arguments and returns Result, or a type that converts to Result.
     template <class Callable>
         requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
@@ -35,7 +36,7 @@ public:
               return called(std::forward<Arguments>(arguments)...);
           }) {}
 
-    /// Refers to adapter(callable, arguments...). The adapter's type has no members, for example a lambda without
+    /// A call returns adapter(callable, arguments...). The adapter's type has no data members, like a lambda without
     /// captures.
     template <class Callable, class Adapter>
         requires(std::is_empty_v<Adapter>&&
@@ -58,8 +59,8 @@ public:
         }
     }
 
-    /// Calls the callable, as non-const unless it is const itself. Passes on its exceptions. Threads: as the callable
-    /// allows. Cost: a call through a pointer.
+    /// Calls the callable: as const if the callable is const, otherwise as non-const. Passes on its exceptions.
+    /// Threads: as the callable allows. Cost: a call through a pointer.
     Result operator()(Arguments... arguments) const {
         return invoke_(object_, std::forward<Arguments>(arguments)...);
     }

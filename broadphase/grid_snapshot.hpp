@@ -4,19 +4,19 @@
 // Saves and restores a grid with its pairs and sweeps: for rollback, replays, training and editors.
 //
 //     GridSnapshot<float> snapshot;
-//     snapshot.save(pairs);     // the grid, its pairs, and the sweeps that they follow
-//     ...                       // frames; proxies come and go
+//     snapshot.save(pairs);     // saves the grid, its Pairs, and their Sweeps
+//     ...                       // frames that add, move and remove proxies
 //     snapshot.restore(pairs);  // back to the saved state
 //
-// Restored  Later calls give the same results, order, cost and new ids as after save(). Only populationNumber()
-//           changes.
-// Ids       Forget ids of proxies added after save(): new proxies may get equal ones.
-// Memory    about as many bytes as the grid, kept for the next save(). On std::bad_alloc, restore() changes nothing,
-//           and save() leaves the snapshot empty.
-// Threads   Needs the grid and this object for itself.
-// Misuse    Asserted, else does nothing: not within a query; pass the Pairs if the grid has any; restore() needs a
-//           saved state, equal settings, and Sweeps exactly if they were saved.
-// Cost      a copy of what the grid, pairs and sweeps hold
+// Restored  After restore(), calls give the same results, order, cost and new ids as after save(). Only
+//           populationNumber() differs.
+// Ids       After restore(), forget ids of proxies that were added after save(): new proxies may get equal ids.
+// Memory    about as many bytes as the grid; the snapshot keeps them for the next save(). On std::bad_alloc,
+//           restore() changes nothing, and save() leaves the snapshot empty.
+// Threads   During a call, no other thread may use the grid or this object.
+// Misuse    Asserted: not called within a query; the Pairs are passed if the grid has any. restore() needs a saved
+//           state, equal settings, and Sweeps exactly if Sweeps were saved. Otherwise a call does nothing.
+// Cost      a copy of what the grid, its Pairs and Sweeps hold
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
@@ -48,38 +48,39 @@ public:
 
     /// Saves a grid without Pairs.
     void save(const Grid<Scalar>& grid);
-    /// Saves the pairs, their grid, and the sweeps that they follow, if any.
+    /// Saves the Pairs, their grid, and their Sweeps, if any.
     void save(const Pairs<Scalar>& pairs);
 
-    /// Restores the saved state into a grid without Pairs: the saved one, or one with equal settings.
+    /// Restores the saved state into a grid without Pairs: the saved grid, or another with equal settings.
     void restore(Grid<Scalar>& grid) const;
-    /// Restores the saved state into pairs, their grid, and the sweeps that they follow.
+    /// Restores the saved state into the Pairs, their grid, and their Sweeps.
     void restore(Pairs<Scalar>& pairs) const;
 
-    /// Returns why restore() would fail, as a sentence; empty if it can succeed. Ask this after read().
+    /// Returns a sentence about why restore() would fail; empty if it can succeed. Call this after read().
     [[nodiscard]] std::string faultFor(const Grid<Scalar>& grid) const;
     [[nodiscard]] std::string faultFor(const Pairs<Scalar>& pairs) const;
 
-    /// Makes room for restore(), which then allocates nothing, until the pairs or their grid release memory.
-    /// Throws std::bad_alloc, and changes nothing. Asserted: as restore().
+    /// Allocates the memory for restore(), which then allocates nothing until the pairs or their grid release memory.
+    /// On std::bad_alloc, changes nothing. Asserted: as for restore().
     void makeRoom(Pairs<Scalar>& pairs) const;
 
-    /// Replaces `bytes` by the snapshot, to send or to keep. Equal states give equal bytes, with a version, a
+    /// Replaces `bytes` with the snapshot, for sending or storing. Equal states give equal bytes, with a version, a
     /// checksum, and numbers in this processor's format. Asserted: the snapshot is not empty. Cost: O(state).
     void write(std::vector<std::byte>& bytes) const;
 
-    /// Reads what write() wrote. Returns an empty string; or a sentence about the fault in the bytes, and changes
-    /// nothing. Whatever the bytes, accepts only states that a grid can have. restore() then restores boxes, ids,
-    /// groups, pairs and sweeps, but not which proxies rest. So costs, and the order in which queries find proxies,
-    /// may differ. Cost: O(state), and finding all pairs from scratch.
+    /// Reads bytes that write() made. Returns an empty string; for faulty bytes, changes nothing, and returns a
+    /// sentence about the fault. Accepts only states that a grid can have, whatever the bytes contain. Cost:
+    /// O(state), plus finding all pairs from scratch.
+    /// After read(), restore() restores boxes, ids, groups, pairs and sweeps, but not which proxies rest. So costs,
+    /// and the order in which queries find proxies, may differ.
     [[nodiscard]] std::string read(std::span<const std::byte> bytes);
 
-    /// Returns the saved proxy with this index; null when there is none. Cost: O(1).
+    /// Returns the id of the saved proxy with this index; null if there is none. Cost: O(1).
     [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept;
     /// Grid::indexLimit() of the saved grid; 0 for an empty snapshot.
     [[nodiscard]] std::uint32_t indexLimit() const noexcept;
 
-    /// True when there is nothing to restore.
+    /// True when the snapshot holds no saved state.
     [[nodiscard]] bool isEmpty() const noexcept { return twin_ == nullptr || !isSaved_; }
 
     /// Bytes held, including unused capacity.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Moves many proxies on several threads, with the result of single moves in order.
+// Moves many proxies on several threads. The result equals single moves in order.
 //
-// One thread writes a proxy's record. Each part of the batch counts and lists its changes; the parts are joined in
-// order. Only mobile proxies, and proxies that stay within their slack, move this way. Others (at rest, sweeping,
-// with a NaN) wait for Store::move(), which the join calls in their turn.
+// Only one thread writes the record of a proxy. Each part of the batch counts and lists its changes. join() then adds
+// the parts in order. Mobile proxies, and proxies that stay within their slack, move on any thread. For other proxies
+// (at rest, sweeping, or with a NaN), join() calls Store::move() in the order of the batch.
 
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/store/store.hpp>
@@ -28,8 +28,8 @@ struct Move {
     Aabb<Scalar> box;
 };
 
-/// True when no proxy is named twice: all indexOf(i) differ and are below `indexLimit`, or are kNoProxyIndex. Calls
-/// indexOf(i) on any thread. Cost: two passes.
+/// True when no proxy appears twice: all indexOf(i) differ, except kNoProxyIndex. False if count > indexLimit. All
+/// other indices must be below `indexLimit`. Calls indexOf(i) on any thread. Cost: two passes over the moves.
 template <class IndexOf>
 [[nodiscard]] bool areDistinct(MoveScratch& scratch, std::size_t count, std::size_t indexLimit,
                                ParallelFor parallelFor, const IndexOf& indexOf) {
@@ -39,7 +39,7 @@ template <class IndexOf>
     if (scratch.namedBy.size() < indexLimit) {
         scratch.namedBy = std::vector<std::atomic<std::uint32_t>>(indexLimit + indexLimit / 2);
     }
-    // If several moves name a proxy, all but the last to write find that out.
+    // If several moves have the same index, only the last writer reads its own i below.
     parallelFor(count, MoveScratch::kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (const std::uint32_t index = indexOf(i); index != kNoProxyIndex) {
@@ -66,14 +66,14 @@ class MoveBatch {
 public:
     explicit MoveBatch(Store<Scalar>& store) : store_(store), scratch_(store.scratchOfMoves()) {}
 
-    /// Calls prepare(i) once for each i, on any thread. If it returns true, moves the proxy by moveOf(i), which is
-    /// called on any thread, perhaps twice. No proxy may be named twice. If `parallelFor` throws, some are moved.
+    /// Calls prepare(i) once for each i. If prepare(i) returns true, calls moveOf(i), perhaps twice, and applies it.
+    /// Both run on any thread. No proxy may appear twice. If `parallelFor` throws, some proxies are moved.
     template <class Prepare, class MoveOf>
     void run(std::size_t count, ParallelFor parallelFor, const Prepare& prepare,
              const MoveOf& moveOf) {
         constexpr std::size_t kGrain = MoveScratch::kGrain;
         std::size_t first = 0;
-        // While a fresh table is in use, move one by one: the first change makes it the mobile one.
+        // While a fresh table is in use, move proxies one by one: a change makes it the mobile table.
         for (; first < count && store_.tables.isFresh.load(std::memory_order_relaxed); ++first) {
             if (prepare(first)) {
                 moveInTurn(moveOf(first));
@@ -99,7 +99,7 @@ public:
                 join(number, [&](std::uint32_t offset) { return moveOf(begin + offset); });
             }
         };
-        // Also when `parallelFor` throws.
+        // Joins the parts, also when `parallelFor` throws.
         const AtEnd<decltype(joinAll)> atEnd(joinAll);
         parallelFor(scratch_.parts.size(), 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t number = begin; number < end; ++number) {
@@ -120,7 +120,7 @@ private:
         AtEnd& operator=(const AtEnd&) = delete;
     };
 
-    static constexpr std::uint32_t kInTurn = std::uint32_t{1} << 31;  // flags a place in the part
+    static constexpr std::uint32_t kInTurn = std::uint32_t{1} << 31;  // flags offsets in a part
 
     void moveInTurn(const Move<Scalar>& move) { store_.move(move.proxyIndex, move.box); }
 
@@ -139,7 +139,7 @@ private:
                            [&]() noexcept { entries[part.entryCount++] = move.proxyIndex; });
     }
 
-    // Joins the parts in the order of the batch.
+    // Adds the changes of one part to the store. Call it in the order of the parts.
     template <class MoveAt>
     void join(std::size_t number, const MoveAt& moveAt) {
         RoomyList<std::uint32_t>& waiting = store_.proxies.waiting;

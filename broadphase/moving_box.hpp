@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Boxes that move along a straight line during a frame, and the time when two of them first touch.
+// Boxes that move along a straight line during a frame, and the time when two such boxes first touch.
 //
 //     const MovingBox<float> bullet{box, velocity * seconds};
 //     if (const std::optional<double> time = firstContact(bullet, {wall})) { ... }
 //
 // Time      from 0 (boxes as given) to 1 (moved by the whole displacement), both inclusive
-// Closed    Touching a face, an edge or a corner for a moment counts.
-// Exact     Whether boxes touch has no rounding error: always in single precision, from 1e-140 to 1e300 m in double.
+// Closed    Sharing a face, an edge or a corner for a moment counts as touching.
+// Exact     Whether boxes touch has no rounding error: in single precision always, in double from 1e-140 to 1e300 m.
 //           The time is rounded to double precision.
 // Units     metres
 // Bad data  A box with a NaN, or with a NaN or infinite displacement, touches nothing.
@@ -27,15 +27,15 @@
 
 namespace hashphase {
 
-/// A box that moves: at the time t it is `box` shifted by t * displacement. It stands still by default.
+/// A moving box: at time t, it is `box` shifted by t * displacement. By default, it does not move.
 template <class Scalar>
 struct MovingBox {
-    Aabb<Scalar> box;                                        ///< at time 0 [m]
-    Vector3<Scalar> displacement = Vector3<Scalar>::Zero();  ///< from time 0 to 1 [m]
+    Aabb<Scalar> box;                                        ///< the box at time 0 [m]
+    Vector3<Scalar> displacement = Vector3<Scalar>::Zero();  ///< the shift from time 0 to 1 [m]
 };
 
-/// Returns a box [m] around the moving box between the times `from` and `to`. Rounded outward: a little too large,
-/// never too small. Cost: O(1).
+/// Returns a box [m] around the moving box from time `from` to time `to`, rounded outward: a little too large, never
+/// too small. Cost: O(1).
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT Aabb<Scalar> sweptBounds(const MovingBox<Scalar>& moving,
                                                                    double from = 0, double to = 1);
@@ -48,24 +48,24 @@ template <class Scalar>
 
 namespace detail {
 
-/// firstContact(), slower, and correct if rounding would decide.
+/// As firstContact(), but slower, and exact even if rounding could change the result.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::optional<double> firstContactExactly(
     const MovingBox<Scalar>& a, const MovingBox<Scalar>& b) noexcept;
 
-/// Computed times have a relative error below this.
+/// The relative error of computed times is below this.
 inline constexpr double kTimeDoubt = 0x1p-49;
-/// Below this, a relative error means nothing.
+/// Below this value, relative errors mean nothing.
 inline constexpr double kTiniest = 0x1p-1000;
 
 }  // namespace detail
 
-/// Returns the first time at which the two boxes touch: 0 if they touch from the start, nothing if they never touch
-/// in the frame. Cost: some ten nanoseconds; half a microsecond if rounding would decide.
+/// Returns the first time at which the two boxes touch: 0 if they touch at the start, std::nullopt if they do not
+/// touch in the frame. Cost: about ten nanoseconds, or half a microsecond if rounding could change the result.
 template <class Scalar>
 [[nodiscard]] inline std::optional<double> firstContact(const MovingBox<Scalar>& a,
                                                         const MovingBox<Scalar>& b) noexcept {
-    // Slabs. Differences and their quotients have the right sign, and one rounding each.
+    // Slab method. Differences and their quotients have the right sign, and one rounding each.
     double begin = 0;
     double end = 1;
     double sum = 0;
@@ -78,8 +78,8 @@ template <class Scalar>
             static_cast<double>(b.box.min()[axis]) - static_cast<double>(a.box.max()[axis]);
         const double above =
             static_cast<double>(a.box.min()[axis]) - static_cast<double>(b.box.max()[axis]);
-        const double ahead = closing > 0 ? below : above;   // closes, if anything
-        const double behind = closing > 0 ? above : below;  // opens
+        const double ahead = closing > 0 ? below : above;   // the gap that closes
+        const double behind = closing > 0 ? above : below;  // the gap that opens
         const double speed = std::abs(closing);
         sum += speed + std::abs(below) + std::abs(above);
         isTiny |= (speed > 0) & (speed < detail::kTiniest);
@@ -89,7 +89,7 @@ template <class Scalar>
         begin = ahead * inverse > begin ? ahead * inverse : begin;
         end = opens < end ? opens : end;
     }
-    // No NaN and no infinity, not in inverses either.
+    // No number and no inverse is NaN or infinite.
     const bool isUsual = detail::isFinite(sum) & !isTiny;
     if (isUsual && neverMeet) {
         return std::nullopt;
@@ -103,13 +103,13 @@ template <class Scalar>
     return begin < end ? std::optional(begin) : std::nullopt;
 }
 
-/// Every box that a moving box meets on its way; the boxes of the grid stand still. Key: the time of the first
-/// contact, by firstContact(). CollectClosest finds the box that is hit first:
+/// Every box that a moving box touches along its path. The boxes of the grid count as not moving. Key: the time that
+/// firstContact() returns. CollectClosest finds the box that is hit first:
 ///
 ///     CollectClosest<float> hit;
-///     grid.visit(MovingBoxRegion<float>({box, displacement}), hit);  // at the time hit.key()
+///     grid.visit(MovingBoxRegion<float>({box, displacement}), hit);  // touches at time hit.key()
 ///
-/// A moving proxy of the grid finds itself too: exclude it by CollectIf.
+/// If the moving box is a proxy of the grid, the query finds this proxy too. Exclude it with CollectIf.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT MovingBoxRegion {
 public:
@@ -122,7 +122,7 @@ public:
         return time ? static_cast<Scalar>(*time) : Scalar(-1);
     }
 
-    /// The way as a ray, a little thicker than the box because of rounding.
+    /// The path as a ray, a little thicker than the box because of rounding.
     [[nodiscard]] const RayRegion<Scalar>& segment() const noexcept { return segment_; }
 
 private:

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds all pairs of proxies within a distance, in one pass. Single queries would test every pair twice.
+// Finds all pairs of proxies within a distance, in one pass. A query for each proxy would test every pair twice.
 //
 //     Neighbours<float> neighbours;
 //     for (const ProxyPair& pair : neighbours.find(grid, 5)) { ... }
 //
-// Threads   find() reads the grid as a query does, and needs this object for itself.
-// See also  RadiusSearch (radius_search.hpp) lists positions within a radius, agent by agent.
+// Threads   find() reads the grid, as queries do. No other thread may use this object during find().
+// See also  RadiusSearch (radius_search.hpp) lists, for each agent, the agents within a radius.
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
@@ -20,19 +20,19 @@
 
 namespace hashphase {
 
-/// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing.
+/// Finds neighbours. Keeps its memory: a frame like the previous frame allocates nothing.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Neighbours {
 public:
-    /// Returns every two proxies whose boxes are at most `distance` [m] apart, each pair once, in any order. The
-    /// distance is between the nearest points, 0 if boxes overlap. A negative or NaN distance finds nothing; a box
-    /// with a NaN has no neighbours. The result does not depend on `parallelFor`, and is valid until the next call.
-    /// Surplus memory is freed after 256 calls in a row with over eight times the room needed.
-    /// Cost: as a grid update, and the pairs; at most all compared with all.
+    /// Returns all pairs of proxies whose boxes are at most `distance` [m] apart, in any order. Each pair appears
+    /// once. The distance is between nearest points, and 0 if boxes overlap. A negative or NaN distance finds
+    /// nothing. A box with a NaN has no neighbours. The result does not depend on `parallelFor`, and is valid until
+    /// the next call. Frees unused memory after 256 calls in a row with over eight times the capacity needed.
+    /// Cost: as a grid update, plus the pairs; at most O(n^2) for n proxies.
     [[nodiscard]] std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
                                                   ParallelFor parallelFor = serialFor) &;
 
-    /// What the last find() cost; hits are pairs.
+    /// Returns the cost of the last find(); its `hits` are pairs.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
     /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Which overlapping proxies make a pair, and what an update reports of pairs.
+// Filters that decide which overlapping proxies make a pair, and the changes of pairs.
 //
 //     const auto areEnemies = [&](ProxyId a, ProxyId b) { return team[a.index] != team[b.index]; };
 //     for (const ProxyPair& pair : pairs.update(areEnemies).born) { ... }
 //
-// If groups and masks suffice, Grid::setGroups() costs less than a filter.
+// If groups and masks are enough, Grid::setGroups() costs less than a filter.
 
 #include <broadphase/export.hpp>
 #include <broadphase/function_ref.hpp>
@@ -21,21 +21,20 @@
 
 namespace hashphase {
 
-/// Decides which overlapping proxies make a pair: a function that is asked about two proxies, or about many pairs at
-/// once.
+/// Decides which overlapping proxies make a pair: a function that takes two ids, or a function that takes many pairs.
 ///
-/// Asked    once when two proxies begin to overlap; again about a refused pair when one of the two has changed; again
-///          by refilter(). Never about ignored pairs, or pairs that groups refuse.
-/// Order    ascending by ids. Thousands of candidates may come in parts, each part in that order.
-/// Threads  the thread that calls Pairs
-/// Misuse   Asserted: the filter does not change the grid; it may query it.
+/// Calls    Pairs asks once when two proxies begin to overlap, again about a refused pair when either proxy has
+///          changed, and again in refilter(). Pairs never asks about ignored pairs, or pairs that groups refuse.
+/// Order    ascending by ids. Thousands of candidates may arrive in parts; each part is sorted.
+/// Threads  The filter runs on the thread that calls Pairs.
+/// Misuse   The filter may query the grid. Asserted: it does not change the grid.
 ///
-/// For parameters only, as FunctionRef: it refers to its function, without a copy.
+/// Use PairFilter only for parameters, as FunctionRef: it refers to the function, without a copy.
 class PairFilter {
 public:
-    /// Returns whether the two make a pair. The first id has the lower index.
+    /// Returns whether the two proxies make a pair. The first id has the lower index.
     using OfOne = FunctionRef<bool(ProxyId, ProxyId)>;
-    /// Sets accepted[i], 0 before, to 1 if asked[i] make a pair. Both spans have the same length.
+    /// Sets accepted[i], which is 0 before, to 1 if asked[i] makes a pair. Both spans have equal lengths.
     using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
 
     template <std::convertible_to<OfOne> Ask>
@@ -48,7 +47,7 @@ public:
     PairFilter(Ask&& ask [[HASHPHASE_LIFETIME_BOUND]])  // NOLINT: conversion is its purpose
         : ask_(ask) {}
 
-    /// Asks about all pairs, and writes the answers to `accepted`, which has the same length and holds zeros.
+    /// Asks about all pairs, and writes the answers to `accepted`, which must have equal length and hold zeros.
     void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
         ask_(asked, accepted);
     }
@@ -69,17 +68,17 @@ private:
     return true;
 }
 
-/// The pairs that began and ended, each list sorted. Lists of update() are valid until the next update(), lists of
-/// other calls until the next such call or update().
+/// The pairs that began and the pairs that ended, each list sorted. Lists of update() are valid until the next
+/// update(). Lists of other calls are valid until the next call that returns PairChanges.
 struct PairChanges {
     std::span<const ProxyPair> born;  ///< new pairs
-    std::span<const ProxyPair> died;  ///< ended pairs; may name removed proxies
+    std::span<const ProxyPair> died;  ///< ended pairs, also of removed proxies
 };
 
 /// What an update cost.
 struct PairCost {
-    std::uint64_t boxesTested = 0;  ///< in all searches for candidates
-    /// Candidates with a mobile proxy, tested whether they still overlap.
+    std::uint64_t boxesTested = 0;  ///< box tests in all searches for candidates
+    /// Number of known candidates whose overlap the update tested again.
     std::uint64_t pairsWatched = 0;
     UpdateCost grid;  ///< what the update of the grid cost
 };

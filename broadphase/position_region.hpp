@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Positions of proxies that count as points, and the ball that finds them. SphereRegion (regions.hpp) measures to the
-// box instead.
+// Treats proxies as points, at their positions, and finds the positions in a ball. SphereRegion (regions.hpp)
+// measures the distance to the box instead.
 //
 //     CollectCount neighbours;
-//     grid.visit(PositionRegion<float>(positionOf(grid.box(agent)), 10), neighbours);  // itself included
+//     grid.visit(PositionRegion<float>(positionOf(grid.box(agent)), 10), neighbours);  // includes the agent
 //
 // Units     metres
 // Bad data  A box that is inverted, or has a NaN or infinite face, has no position: no ball finds it.
@@ -22,8 +22,8 @@
 
 namespace hashphase {
 
-/// Returns the centre of the box [m], without overflow and inside the closed box. NaN for a box without a position.
-/// Cost: O(1).
+/// Returns the centre of the box [m], inside the closed box; the sum does not overflow. NaN for a box without a
+/// position. Cost: O(1).
 template <class Scalar>
 [[nodiscard]] Vector3<Scalar> positionOf(const Aabb<Scalar>& box) noexcept {
     Vector3<Scalar> position;
@@ -33,7 +33,7 @@ template <class Scalar>
         const Scalar high = box.max()[axis];
         const Scalar middle = low / 2 + high / 2;
         isSomewhere &= (low <= high) & detail::isFinite(middle);
-        // Rounding half of a denormal could leave the box.
+        // Half of a denormal rounds, perhaps out of the box.
         position[axis] = std::min(std::max(middle, low), high);
     }
     if (!isSomewhere) {
@@ -43,8 +43,8 @@ template <class Scalar>
 }
 
 /// Every proxy whose position is within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the
-/// centre, which may round to 0 or infinity. A distance that overflows is only within an infinite radius. The region
-/// is empty for a negative or NaN radius, or a centre that is not finite.
+/// centre; it may round to 0 or infinity. If the distance itself overflows, only an infinite radius finds the proxy.
+/// The region is empty for a negative or NaN radius, or a centre that is not finite.
 template <class Scalar>
 class PositionRegion {
 public:
@@ -61,20 +61,20 @@ public:
         return keyAt(positionOf(box));
     }
 
-    /// Returns the key of a box with this position [m]; -1 for a NaN.
+    /// Returns key() of a box with this position [m]; -1 for a NaN.
     [[nodiscard]] Scalar keyAt(const Vector3<Scalar>& position) const noexcept {
         return detail::squareWithin(position[0] - center_[0], position[1] - center_[1],
                                     position[2] - center_[2], radius_, scale_);
     }
 
-    /// The cube around the ball, rounded outward; NaN when the region is empty.
+    /// The cube around the ball, rounded outward. All coordinates are NaN when the region is empty.
     [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
         using Limits = std::numeric_limits<Scalar>;
         if (detail::isNan(radius_) || !(radius_ >= 0)) {
             const auto nan = Vector3<Scalar>::Constant(Limits::quiet_NaN());
             return {nan, nan};
         }
-        // Rounded outward, as keys are rounded. A box overlaps every box that holds its position.
+        // Rounded outward, because key() rounds. A box overlaps the cube if the cube contains its position.
         const Scalar reach = center_.cwiseAbs().maxCoeff() + radius_;
         const Scalar padded = radius_ + 4 * Limits::epsilon() * reach + Limits::min();
         const auto half = Vector3<Scalar>::Constant(padded);

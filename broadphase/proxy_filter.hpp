@@ -11,12 +11,12 @@
 namespace hashphase {
 
 /// Returns whether a query may find a proxy, for example by team or by group and mask
-/// (integration/bullet/group_filter.hpp). Asked only about proxies in the region. Threads: those of the query.
+/// (integration/bullet/group_filter.hpp). A query asks only about proxies in its region, on the query's threads.
 ///
-/// For parameters only: it refers to the function. Keep the function itself:
+/// Use ProxyFilter only for parameters: it refers to the function. In variables, keep the function itself:
 ///
 ///     const auto enemies = [&](ProxyId id) { return team[id.index] != team[self.index]; };  // right
-///     const ProxyFilter enemies = [&](ProxyId id) { ... };  // wrong: the lambda is gone (Clang warns)
+///     const ProxyFilter enemies = [&](ProxyId id) { ... };  // wrong: the lambda is destroyed (Clang warns)
 using ProxyFilter = FunctionRef<bool(ProxyId)>;
 
 /// The filter that accepts every proxy.
@@ -24,7 +24,7 @@ using ProxyFilter = FunctionRef<bool(ProxyId)>;
     return true;
 }
 
-/// Passes the proxies that a filter accepts to another collector:
+/// Passes only accepted proxies to another collector:
 ///
 ///     CollectIf enemies(all, [&](ProxyId id) { ... });
 ///     grid.visit(region, enemies);
@@ -33,7 +33,7 @@ using ProxyFilter = FunctionRef<bool(ProxyId)>;
 template <class Collector, class Filter>
 class CollectIf {
 public:
-    /// The other collector must outlive this one. The filter, bool(ProxyId), is copied.
+    /// `collector` must outlive this object. Copies the filter, a bool(ProxyId).
     CollectIf(Collector& collector, Filter filter)
         : collector_(collector), filter_(std::move(filter)) {}
 
@@ -43,7 +43,7 @@ public:
             collector_.add(id, key);
         }
     }
-    /// The other collector's limit, so that the search shrinks as for it alone.
+    /// The limit of the other collector: the search shrinks as without the filter.
     [[nodiscard]] auto limit() const { return collector_.limit(); }
 
 private:

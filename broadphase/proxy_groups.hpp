@@ -6,19 +6,19 @@
 
 namespace hashphase {
 
-/// Which proxies a proxy may pair with: see mayPair() and Grid::setGroups(). The program defines the bits. By default
-/// all proxies may pair. A proxy whose group or mask is 0 pairs with none.
+/// Which proxies a proxy may pair with: see mayPair() and Grid::setGroups(). Your program defines the bits. By
+/// default, all proxies may pair. A proxy whose group or mask is 0 pairs with no proxy.
 ///
 ///     constexpr std::uint32_t kWalls = 1, kBullets = 2;
 ///     grid.setGroups(bullet, {.group = kBullets, .mask = kWalls});  // bullets ignore each other
 struct ProxyGroups {
     std::uint32_t group = ~std::uint32_t{0};  ///< bits of the groups that the proxy is in
-    std::uint32_t mask = ~std::uint32_t{0};   ///< bits of the groups that it may pair with
+    std::uint32_t mask = ~std::uint32_t{0};   ///< bits of the groups that the proxy may pair with
 
     friend constexpr bool operator==(const ProxyGroups&, const ProxyGroups&) = default;
 };
 
-/// True when each group has a bit in the other's mask: Bullet's rule.
+/// True when each group shares a bit with the other proxy's mask, as in Bullet.
 [[nodiscard]] constexpr bool mayPair(const ProxyGroups& a, const ProxyGroups& b) noexcept {
     return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;
 }

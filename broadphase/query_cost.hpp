@@ -5,13 +5,13 @@
 
 namespace hashphase {
 
-/// What a query cost, as counts of work, not times.
+/// The cost of a query: counts of work, not times.
 struct QueryCost {
-    std::uint64_t rowsVisited = 0;  ///< rows of cells, or a ray's blocks of up to eight boxes
+    std::uint64_t rowsVisited = 0;  ///< rows of cells; for rays, blocks of up to eight boxes
     std::uint64_t boxesTested = 0;  ///< boxes compared with the region
     std::uint64_t hits = 0;         ///< proxies given to the collector
 
-    /// Adds the counts, for the cost of several queries.
+    /// Adds the counts of `other`, to sum the costs of several queries.
     QueryCost& operator+=(const QueryCost& other) noexcept {
         rowsVisited += other.rowsVisited;
         boxesTested += other.boxesTested;

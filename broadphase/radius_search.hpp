@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the neighbours of all agents within a radius, at once, as AI needs in every frame.
+// Finds, for all agents at once, the neighbours within a radius, as AI needs in every frame.
 //
 //     search.take(grid, 10);
 //     search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) { ... });
 //
-// A frame     take() copies the positions of all proxies; then ask any number of questions.
-// Agents      proxies at the centres of their boxes (positionOf() in position_region.hpp). Each take() numbers them
-//             from 0, in spatial order.
+// A frame     Call take(), which copies the positions of all proxies. Then search any number of times.
+// Agents      Agents are proxies at the centres of their boxes (positionOf() in position_region.hpp). Each take()
+//             numbers the agents from 0, in spatial order.
 // Neighbours  the other agents with (dx^2 + dy^2) + dz^2 <= radius^2, each operation rounded to Scalar. Radii outside
-//             2^-60 to 2^60 (double: 2^-480 to 2^480) are first scaled by a power of two. So the relation is
-//             symmetric, and equal on all instruction sets and any number of threads.
-// Bad data    A proxy with a NaN, infinite or inverted box is no agent: see leftOutCount(). A negative or NaN radius
-//             gives no neighbours, an infinite one all other agents.
-// Threads     All except accessors needs this object for itself. take() reads the grid, as queries do.
+//             2^-60 to 2^60 (double: 2^-480 to 2^480) are first scaled by a power of two. So if a finds b,
+//             b finds a. Results are equal on all instruction sets, with any number of threads.
+// Bad data    A proxy with a NaN, infinite or inverted box is not an agent: see leftOutCount(). A negative or NaN
+//             radius gives no neighbours. An infinite radius gives all other agents.
+// Threads     Accessors may run on several threads at once. During other calls, no other thread may use this object.
+//             take() reads the grid, as queries do.
 // Units       metres, or the grid's unit of length
 // See also    Neighbours (neighbours.hpp) lists pairs of boxes.
 
@@ -37,13 +38,13 @@
 
 namespace hashphase {
 
-/// Finds neighbours. Keeps its memory: a frame like the last one allocates nothing, except for additional threads.
+/// Finds neighbours. Keeps its memory: a frame like the previous frame allocates only for additional threads.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT RadiusSearch {
 public:
     using Point = Vector3<Scalar>;
 
-    /// The most groups that countGroups() takes.
+    /// The largest groupCount of countGroups().
     static constexpr std::uint32_t kMostGroups = detail::kMostGroups;
 
     RadiusSearch();
@@ -53,10 +54,11 @@ public:
 
     // --- The agents ------------------------------------------------------------------------------
 
-    /// Takes the present proxies that the filter accepts, for questions about `radius` [m]. The filter runs on the
-    /// threads of `parallelFor`, for some proxies twice. If memory runs out or the filter throws, there are no
-    /// agents. Surplus memory is freed after 256 calls in a row with over eight times the room needed. Asserted: the
-    /// filter changes neither the grid nor this object. Cost: a few passes over the grid's proxies.
+    /// Makes agents of all proxies that the filter accepts, for searches with `radius` [m]. Calls the filter on this
+    /// thread and the threads of `parallelFor`, twice for some proxies. If memory runs out or the filter throws,
+    /// there are no agents. Frees unused memory after 256 calls in a row with over eight times the capacity needed.
+    /// Asserted: the filter changes neither the grid nor this object.
+    /// Cost: a few passes over the grid's proxies.
     void take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter = acceptAll,
               ParallelFor parallelFor = serialFor);
 
@@ -65,10 +67,11 @@ public:
         return static_cast<std::uint32_t>(ids_.size());
     }
 
-    /// Number of accepted proxies without a position, which are no agents.
+    /// Number of accepted proxies that are not agents because they have no position.
     [[nodiscard]] std::uint32_t leftOutCount() const noexcept { return leftOut_; }
 
-    /// Returns the proxy of an agent, or its position [m]; ids() returns all ids by agent. Asserted: agent < size().
+    /// id() returns the agent's proxy, ids() all proxies by agent, position() the position [m].
+    /// Asserted: agent < size().
     [[nodiscard]] ProxyId id(std::uint32_t agent) const {
         HASHPHASE_ASSERT(agent < size(),
                          "RadiusSearch::id(): there is no such agent. Pass a number below size().");
@@ -82,12 +85,12 @@ public:
         return {columns_[0][agent], columns_[1][agent], columns_[2][agent]};
     }
 
-    // --- Questions -------------------------------------------------------------------------------
+    // --- Searches --------------------------------------------------------------------------------
 
     /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent, on the threads of
-    /// `parallelFor`. The neighbours are valid during the call; their order does not depend on `parallelFor`. Returns
-    /// the cost; hits are neighbours. Asserted: visit() asks this object only for ids and positions. Cost: each agent
-    /// against the cells around it; at most all with all.
+    /// `parallelFor`. The span is valid until visit() returns. Its order does not depend on `parallelFor`. Returns
+    /// the cost; its `hits` are neighbours. Asserted: visit() calls only accessors of this object. Cost: tests each
+    /// agent against the agents in cells around it; at most O(n^2) for n agents.
     template <std::invocable<std::uint32_t, std::span<const std::uint32_t>> Visit>
     QueryCost forEach(Visit&& visit, ParallelFor parallelFor = serialFor) {
         using Target = std::remove_reference_t<Visit>;
@@ -103,10 +106,10 @@ public:
     /// size().
     QueryCost count(std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 
-    /// Sets counts[agent * groupCount + group] to the agent's number of neighbours in that group. Asks
-    /// groupOf(ProxyId) once per agent, on the threads of `parallelFor`. Agents with a group of groupCount or more
-    /// are not counted. Asserted: counts.size() == size() * groupCount; groupCount <= kMostGroups. Cost: as count(),
-    /// and a pass over the agents.
+    /// Sets counts[agent * groupCount + group] to the agent's number of neighbours in that group. Calls
+    /// groupOf(ProxyId) once per agent, on the threads of `parallelFor`. Does not count neighbours whose group is
+    /// groupCount or more. Asserted: counts.size() == size() * groupCount; groupCount <= kMostGroups.
+    /// Cost: as count(), plus a pass over the agents.
     QueryCost countGroups(std::uint32_t groupCount, FunctionRef<std::uint32_t(ProxyId)> groupOf,
                           std::span<std::uint32_t> counts, ParallelFor parallelFor = serialFor);
 
@@ -140,9 +143,9 @@ private:
         return few_.empty() ? static_cast<std::uint32_t>(place) : few_[place];
     }
 
-    std::vector<std::uint32_t> few_;  // indices, if few have proxies
-    std::size_t placeCount_ = 0;      // number of these indices, or of all
-    std::vector<Staged> staged_;      // by place among them
+    std::vector<std::uint32_t> few_;  // indices of proxies if few indices have one, else empty
+    std::size_t placeCount_ = 0;      // size of few_, or number of all indices
+    std::vector<Staged> staged_;      // by place (see indexAt())
     std::vector<std::uint32_t> cellOfPlace_;
     detail::PeakWatch peaks_;
     std::uint32_t agentCount_ = 0;
@@ -150,8 +153,8 @@ private:
     detail::PointSample sample_;
     detail::WrappedGrid wrappedGrid_;
 
-    std::vector<std::uint32_t> cellStart_;  // first agent of each cell, and the end
-    std::vector<std::uint32_t> places_;     // of agents, by cell
+    std::vector<std::uint32_t> cellStart_;  // first agent of each cell, then size()
+    std::vector<std::uint32_t> places_;     // of agents, sorted by cell
     std::vector<ProxyId> ids_;
     std::array<std::vector<Scalar>, 3> columns_;  // positions; kColumnPadding longer
     std::vector<std::uint32_t> numbers_;          // 0, 1, 2 ...; never shrinks
@@ -159,7 +162,7 @@ private:
     detail::RadiusView<Scalar> view_{};
 
     std::mutex tilesMutex_;
-    std::vector<std::unique_ptr<Tile>> tiles_;  // idle; one per thread at work at once
+    std::vector<std::unique_ptr<Tile>> tiles_;  // idle tiles; each working thread borrows one
 };
 
 extern template class RadiusSearch<float>;

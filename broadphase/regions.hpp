@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Regions define where a query looks. A region has two members:
+// Regions define where a query searches. A region has two members:
 //
-//   key(box)   returns the box's distance in the region's own measure (0 or more); negative outside the region
-//   bounds()   returns a box that overlaps every box with a key
+//   key(box)   returns the box's distance as the region defines it, 0 or more; negative outside the region
+//   bounds()   returns a box that overlaps every box in the region
 //
 //     CollectClosest<float> closest;
-//     grid.visit(SphereRegion<float>(center, 10), closest);  // the box nearest to the centre, up to 10 m
+//     grid.visit(SphereRegion<float>(center, 10), closest);  // the box nearest to `center`, within 10 m
 //
-// key() decides the result. bounds() only saves work: it may be too large, never too small. With the constant
-// kIsItsBounds, every box that overlaps bounds() has the key 0. Instead of bounds(), a region along a line has
-// segment(), a RayRegion that meets every box with a key, no later than that key. A convex region has volume().
+// key() decides the result. bounds() only saves work: the box may be too large, never too small. A class with a
+// constant kIsItsBounds promises that every box that overlaps bounds() has the key 0. Instead of bounds(), a region
+// along a line has segment(): a RayRegion whose key is at most the region's key, for every box in the region. A
+// convex region has volume() instead.
 //
 // Others   PositionRegion (positions, not boxes), CellsRegion (an estimate), MovingBoxRegion (first contact of a
-//          moving box), ConvexRegion (frusta), and any class with these members
+//          moving box), ConvexRegion (frusta), and any class of yours with these members
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
-// NaN      A region with a NaN is empty.
+// NaN      A region with a NaN is empty: queries find no box.
 // Threads  values; use them from any thread
 
 #include <broadphase/aabb.hpp>
@@ -31,7 +32,7 @@
 
 namespace hashphase {
 
-/// Every box that overlaps `box` (closed), as overlaps() defines it, infinite and inverted boxes included. Key: 0.
+/// Every box that overlaps the closed `box`. overlaps() decides, also for infinite and inverted boxes. Key: 0.
 template <class Scalar>
 struct BoxRegion {
     static constexpr bool kIsItsBounds = true;
@@ -46,7 +47,7 @@ struct BoxRegion {
 };
 
 /// Every box within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the centre to the box, 0
-/// if the centre is inside. A negative radius is empty; an infinite one holds every box.
+/// if the centre is inside the box. With a negative radius, the region is empty. An infinite radius gives every box.
 template <class Scalar>
 class SphereRegion {
 public:
@@ -54,8 +55,8 @@ public:
     SphereRegion(const Vector3<Scalar>& center, Scalar radius)
         : center_(center), radius_(radius), scale_(detail::unitScale(radius)) {}
 
-    /// Returns the squared distance [m^2]; -1 outside. It may round to 0 or infinity, which does not affect whether
-    /// the box is in the ball.
+    /// Returns the squared distance [m^2]; -1 outside the ball. The square may round to 0 or infinity. This does not
+    /// affect whether the box is in the ball.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         Scalar outside[3] = {};
         for (int axis = 0; axis < 3; ++axis) {
@@ -69,7 +70,7 @@ public:
         return detail::squareWithin(outside[0], outside[1], outside[2], radius_, scale_);
     }
 
-    /// The cube around the ball, rounded outward; NaN when the region is empty.
+    /// The cube around the ball, rounded outward. All coordinates are NaN when the region is empty.
     [[nodiscard]] Aabb<Scalar> bounds() const noexcept {
         using Limits = std::numeric_limits<Scalar>;
         const bool isEmpty = detail::anyNan(center_) || detail::isNan(radius_) || !(radius_ >= 0);
@@ -91,19 +92,19 @@ private:
     Scalar scale_;
 };
 
-/// Every box that a segment meets, or that another box meets while it moves along the segment (a "fat" ray). Key: the
-/// fraction of the way at which the ray enters the box, 0 if it begins inside.
+/// Every box that a ray meets. The ray is a segment, or a box that moves along the segment (a "fat" ray). Key: the
+/// fraction of the segment at which the ray enters the box, 0 if the ray begins inside.
 ///
-/// Closed: grazing a face, an edge or a corner counts, and rounding favours a hit. The length may be 0. A segment
-/// with an infinite end or length is empty.
+/// Touching a face, an edge or a corner is a hit, and rounding favours a hit. The length may be 0. With an infinite
+/// end or length, the region is empty.
 ///
 ///     CollectClosest<float> first;
-///     grid.visit(RayRegion<float>(from, to), first);  // enters at from + first.key() * (to - from)
+///     grid.visit(RayRegion<float>(from, to), first);  // entry: from + first.key() * (to - from)
 template <class Scalar>
 class RayRegion {
 public:
     /// The segment from `from` to `to` [m]. `fatness` [m] is the moving box relative to the moving point, for example
-    /// (-halfExtents, halfExtents); a point by default.
+    /// (-halfExtents, halfExtents). By default, it is a point.
     RayRegion(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
               const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
         : from_(from), direction_(to - from), fatness_(fatness) {
@@ -113,7 +114,7 @@ public:
         } else if (direction_.cwiseAbs().maxCoeff() > 1 / Limits::min()) {
             scale_ = Scalar(0.125);
         }
-        // key() computes with rounded numbers, so the fatness grows by their rounding.
+        // key() rounds, so the fatness grows by the rounding error.
         const auto rounding = [](const Vector3<Scalar>& corner) {
             return (Limits::epsilon() * corner.cwiseAbs().cwiseMin(Limits::max())).eval();
         };
@@ -123,7 +124,7 @@ public:
         inverse_ = (scale_ * direction_).cwiseInverse();
         for (int axis = 0; axis < 3; ++axis) {
             if (!detail::isFinite(inverse_[axis]) && !detail::isNan(inverse_[axis])) {
-                // A way too short to be inverted thickens the box instead.
+                // A component too small to be inverted thickens the box instead.
                 (direction_[axis] > 0 ? fatness_.max() : fatness_.min())[axis] += direction_[axis];
                 direction_[axis] = 0;
             }
@@ -135,16 +136,16 @@ public:
         if (HASHPHASE_OVERLOOKS_NAN && isEmpty()) {
             return -1;
         }
-        // Slabs; each distance is off by at most gamma(3), see Pharr, Jakob, Humphreys,
+        // Slab method; the error of each distance is at most gamma(3), see Pharr, Jakob, Humphreys,
         // "Physically Based Rendering", 4th edition, section 6.8.3.
         Scalar enter = 0;
         Scalar exit = last_;
         for (int axis = 0; axis < 3; ++axis) {
-            // Relative to the ray first, which keeps small numbers exact far from the origin.
+            // Subtract `from_` first: small numbers stay exact far from the origin.
             const Scalar relativeMin = box.min()[axis] - from_[axis];
             const Scalar relativeMax = box.max()[axis] - from_[axis];
             if (direction_[axis] == 0) {
-                // Not by differences: both may be infinite.
+                // Do not subtract: both numbers may be infinite.
                 if (!(relativeMin <= fatness_.max()[axis] && relativeMax >= fatness_.min()[axis])) {
                     return -1;
                 }
@@ -167,16 +168,16 @@ public:
         return enter <= exit ? std::min(enter, Scalar(1)) : Scalar(-1);
     }
 
-    /// True when no box has a key: an end or the length is NaN or infinite.
+    /// True when the region is empty: an end or the length of the segment is NaN or infinite.
     [[nodiscard]] bool isEmpty() const noexcept { return detail::anyNan(direction_); }
-    /// Where the ray begins [m].
+    /// The start of the ray [m].
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
-    /// `to` - `from` [m], but 0 along an axis where it is too short to be inverted; NaN when isEmpty().
+    /// `to` - `from` [m]; components too small to be inverted are 0. NaN when isEmpty().
     [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
-    /// The box given to the constructor [m], thicker by at most a rounding error.
+    /// The `fatness` given to the constructor [m], thicker by at most a rounding error.
     [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
 
-    /// Makes grids search along this line in a tree of boxes instead of cells.
+    /// Returns this ray: grids search regions with segment() in a tree of boxes, not in cells.
     [[nodiscard]] const RayRegion& segment() const noexcept { return *this; }
 
 private:
@@ -184,9 +185,9 @@ private:
 
     Vector3<Scalar> from_;
     Vector3<Scalar> direction_;
-    Vector3<Scalar> inverse_;  // of scale_ * direction_
+    Vector3<Scalar> inverse_;  // inverse of scale_ * direction_
     Aabb<Scalar> fatness_;
-    Scalar last_ = 1;  // key at the end of the way, beyond 1 if rounding matters
+    Scalar last_ = 1;  // key at the end of the ray, above 1 if rounding matters
     // A power of two: below 1 if the inverse would be denormal.
     Scalar scale_ = 1;
 };

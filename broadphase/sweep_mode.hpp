@@ -7,21 +7,21 @@
 
 namespace hashphase {
 
-/// Where to search for proxies that a sweeping proxy passes. All modes except none find the same proxies.
+/// How to search for proxies that a sweeping proxy touches. All modes except `none` find the same proxies.
 enum class Sweep : std::uint8_t {
     none,       ///< no search: the proxy does not sweep
-    box,        ///< the box around its way: for short ways, and ways along an axis
-    line,       ///< along its way: for long ways, such as of bullets
-    automatic,  ///< line if the way is long along two axes or three, else box
+    box,        ///< in the box around the path: for short paths, and paths along an axis
+    line,       ///< along the path: for long paths, such as paths of bullets
+    automatic,  ///< `line` if the path is long along two or three axes, else `box`
 };
 
 /// What sweeps cost in an update.
 struct SweepCost {
     std::uint32_t sweeping = 0;        ///< proxies that swept
-    std::uint32_t segments = 0;        ///< boxes along their ways that were searched
-    std::uint32_t rays = 0;            ///< ways so long that each was searched as a ray
-    std::uint64_t boxesTested = 0;     ///< against segments and rays, and with each other
-    std::uint64_t contactsTested = 0;  ///< by firstContact(), for all but rays
+    std::uint32_t segments = 0;        ///< searched boxes around parts of paths
+    std::uint32_t rays = 0;            ///< long paths that were searched as a ray
+    std::uint64_t boxesTested = 0;     ///< box tests: with segments, rays and each other
+    std::uint64_t contactsTested = 0;  ///< calls of firstContact(), without rays
 };
 
 }  // namespace hashphase

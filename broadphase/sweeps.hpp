@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Sweeps: for proxies that move far in a frame, such as bullets, and must not miss pairs on their way.
+// Sweeps are for proxies that move far in a frame, such as bullets, and must not miss pairs along their paths.
 //
-// A sweeping proxy pairs with every proxy that it touches on its way; two of them, if they touch at the same time.
+// A sweeping proxy pairs with every proxy that it touches along its path. Two sweeping proxies pair if they touch at
+// the same time. Crossing paths are not enough.
 //
 //     Sweeps<float> sweeps(grid);
 //     Pairs<float> pairs(grid, &sweeps);
 //     sweeps.set(bullet, velocity * seconds);
-//     pairs.update();  // the proxies that the bullet touches on its way
+//     pairs.update();  // the proxies that the bullet touches along its path
 //
-// A frame   Grid::move() the proxy to where it begins the frame, set() how far it moves, then Pairs::update(). Both
-//           hold until set again.
-// Queries   of the grid use the box in the grid, which may differ from the moving one, for example around the whole
-//           way. visit() finds the proxy on its way, more exactly.
-// Modes     find the same pairs at different costs: the exact firstContact() confirms each pair.
-// Cost      Sweeping takes time at any speed; Sweep::box reads the whole box around the way. Other proxies cost no
-//           more.
-// Threads   visit() may run on any thread; all else needs the grid for itself.
+// A frame   Call Grid::move() with the box at the start of the frame, set() with the displacement, then
+//           Pairs::update(). Both stay until you set them again.
+// Queries   Grid queries use the box in the grid. It may differ from the moving box, for example contain the path.
+//           Sweeps::visit() finds the proxy along its path, more exactly.
+// Modes     All modes find the same pairs, at different costs: the exact firstContact() confirms each pair.
+// Cost      A sweep takes time even at low speed. Sweep::box searches the box around the path. Other proxies cost no
+//           more than without sweeps.
+// Threads   visit() may run on several threads at once. During other calls, no other thread may use the grid.
 // Units     metres; times are fractions of the frame, 0 to 1
-// Bad data  A NaN or infinite displacement counts as none. The message handler reports the first one.
+// Bad data  A proxy with a NaN or infinite displacement does not sweep. The message handler reports the first case.
 // Misuse    Asserted: the grid contains the id.
 // Source    Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005
 
@@ -52,26 +53,26 @@ public:
     Sweeps(const Sweeps&) = delete;
     Sweeps& operator=(const Sweeps&) = delete;
 
-    /// Lets the proxy's box sweep by `displacement` [m] in each frame, until the next set(). Zero, or Sweep::none,
-    /// ends the sweep. Throws std::bad_alloc, and changes nothing. Asserted: not within a query that forbids changes.
-    /// Cost: O(1) amortised.
+    /// Lets the proxy's box sweep by `displacement` [m] in each frame, until the next set(). A zero displacement or
+    /// Sweep::none ends the sweep. If it throws std::bad_alloc, nothing has changed. Asserted: not within a query
+    /// that forbids changes. Cost: O(1) amortised.
     void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
 
-    /// Lets `way.box` sweep instead. The proxy's pairs then follow from `way` alone; queries of the grid use the box
-    /// in the grid. Grid::shiftOrigin() shifts both.
+    /// Lets `way.box` sweep instead of the box in the grid. The proxy's pairs depend only on `way`. Grid queries
+    /// still use the box in the grid. Grid::shiftOrigin() shifts both boxes.
     void set(ProxyId id, const MovingBox<Scalar>& way, Sweep sweep = Sweep::automatic);
 
-    /// Returns the box that moves, where it begins, and its displacement [m]. Without a sweep: the box in the grid,
-    /// and a displacement of zero.
+    /// Returns the moving box at the start of its path, and its displacement [m]. For a proxy that does not sweep:
+    /// the box in the grid, and a zero displacement.
     [[nodiscard]] MovingBox<Scalar> motion(ProxyId id) const;
 
-    /// Number of sweeping proxies, including those removed from the grid since the last update.
+    /// Number of sweeping proxies, including proxies removed from the grid since the last update.
     [[nodiscard]] std::size_t size() const noexcept { return sweeping_.motions.size(); }
 
-    /// As Grid::visit(), but finds sweeping proxies on their ways: by the box around the way, or boxes around up to
-    /// 64 parts. Finds every proxy that passes through the region, and perhaps near misses. Key: the smallest key of
-    /// these boxes. A PositionRegion, or a region for boxes inside, finds for certain only the box where the way
-    /// begins. Cost: as Grid::visit(), plus the parts of each sweeping proxy's way.
+    /// As Grid::visit(), but finds sweeping proxies along their paths. Tests the box around the path, or boxes around
+    /// up to 64 parts. Finds every proxy that passes through the region, and perhaps near misses. Key: the smallest
+    /// key of these boxes. With a PositionRegion or Containment::inside, only boxes at the start of paths are certain
+    /// to be found. Cost: as Grid::visit(), plus the parts of each path.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
@@ -80,15 +81,15 @@ public:
     /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Frees surplus room, also for indices that the grid has dropped, and scratch that the next update allocates
-    /// again. Asserted: not within a query. Cost: O(dropped indices), and moving the rest.
+    /// Frees unused capacity, also for indices that the grid has dropped, and scratch memory that the next update
+    /// allocates again. Asserted: not within a query. Cost: O(dropped indices), plus a copy of the rest.
     void releaseUnusedMemory() noexcept;
 
-    /// Returns the broken invariant as a sentence; empty when it holds: every motion is listed by its index, and no
-    /// other index is.
+    /// Returns the broken invariant as a sentence; empty when it holds. Every motion is listed by its index, and no
+    /// other index is listed.
     [[nodiscard]] std::string validate() const;
 
-    /// For the library's own parts. It may change with any version.
+    /// Internal state. It may change with any version.
     [[nodiscard]] detail::Sweeping<Scalar>& sweeping() noexcept { return sweeping_; }
 
 private:
@@ -121,7 +122,7 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
         add(ofAll);
         return least;
     }
-    // Parts of about the box's size; a longer way has larger parts.
+    // Parts have about the box's size. A path over 64 sizes long has larger parts.
     constexpr double mostParts = 64;
     const auto size = static_cast<double>(way.box.sizes().maxCoeff());
     const auto distance = static_cast<double>(way.displacement.cwiseAbs().maxCoeff());
@@ -140,7 +141,7 @@ QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) cons
     CollectIf standing(collector, stands);
     QueryCost cost = grid_.visit(region, standing);
     const detail::QueryScope scope(&grid_.store(), detail::QueryScope::Changes::allowed);
-    // No iterators or references: the collector may change the sweeps. Sweeps that begin meanwhile are not searched.
+    // By index: the collector may change the sweeps. Sweeps that begin meanwhile are not searched.
     const std::vector<Motion>& motions = sweeping_.motions.all;
     const std::size_t count = motions.size();
     for (std::size_t i = 0; i < count && collector.limit() >= 0; ++i) {

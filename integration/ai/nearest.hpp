@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the proxies nearest to a point, by position.
+// Finds the proxies nearest to a point, by the centres of their boxes.
 //
-// Threads   Reads the grid, as queries do.
-// Bad data  Finds nothing with a point that is not finite, or a negative or NaN distance. Never finds proxies without
+// Threads   Call from any thread while no thread changes the grid.
+// Bad data  Finds nothing if the point is not finite, or the distance is negative or NaN. Never finds proxies without
 //           a position (position_region.hpp).
 
 #include <broadphase/collectors.hpp>
@@ -19,11 +19,11 @@
 
 namespace hashphase {
 
-/// Finds the `count` accepted proxies nearest to `point` [m], at most `maximalDistance` [m] away, which may be
-/// infinite. Replaces `nearest`: near to far, with squared distances [m^2] as keys; of equal keys the smallest id
-/// first. Leaves out `self`, usually the asking proxy, if not null. May ask the filter about a proxy several times.
-/// Returns the cost. Cost: searches growing balls: a few that hold about `count` proxies if density is even; at most
-/// as reading the grid three times, and once for each doubling of the distance.
+/// Finds the `count` accepted proxies nearest to `point` [m], at most `maximalDistance` [m] away (may be infinite).
+/// Replaces `nearest`, sorted from near to far; keys are squared distances [m^2]. Of equal keys, the smallest id
+/// comes first. Leaves out `self`, usually the asking proxy. May call the filter several times for a proxy. Returns
+/// the cost. Cost: queries of balls that double in radius: at even density, a few balls with about `count` proxies.
+/// At most three reads of the grid, and one query per doubling.
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost findNearest(const Grid<Scalar>& grid,
                                           const Vector3<std::type_identity_t<Scalar>>& point,

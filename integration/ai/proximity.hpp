@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the proxies near an agent, exactly or as an estimate by cells (paper, "AI proximity decisions").
+// Finds the proxies near an agent, exactly or estimated by cells (paper, "AI proximity decisions").
 //
-// Distance  Between positions, that is centres of boxes. The ball is closed.
-// Agent     Leaves out `self`, usually the asking proxy, if not null.
-// Results   Replace `found`: each proxy once, sorted by id. Allocates nothing if the vector has room.
-// Threads   Reads the grid, as queries do.
-// Bad data  Finds nothing with a position that is not finite, or a negative or NaN radius. An infinite radius finds
+// Distance  Between positions: the centres of boxes. A proxy exactly at the radius is found.
+// Agent     Never finds `self`, usually the asking proxy.
+// Results   Replace `found`: each proxy once, sorted by id. Allocates only if `found` has too little capacity.
+// Threads   Call from any thread while no thread changes the grid.
+// Bad data  Finds nothing if the position is not finite, or the radius is negative or NaN. An infinite radius finds
 //           every proxy with a position (position_region.hpp).
-// Others    nearest.hpp for the n nearest; broadphase/radius_search.hpp and neighbours.hpp for all agents at once
+// See also  nearest.hpp (n nearest); broadphase/radius_search.hpp and neighbours.hpp (all agents at once)
 
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
@@ -20,8 +20,8 @@
 
 namespace hashphase {
 
-/// Finds the proxies whose position is within `radius` [m] of `position` [m]. Returns the cost. Cost: Grid::visit()
-/// of the ball, and sorting.
+/// Finds the proxies whose positions are at most `radius` [m] from `position` [m]. Returns the cost. Cost:
+/// Grid::visit() of the ball, and sorting.
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost findWithin(const Grid<Scalar>& grid,
                                          const Vector3<std::type_identity_t<Scalar>>& position,
@@ -29,11 +29,11 @@ HASHPHASE_AI_EXPORT QueryCost findWithin(const Grid<Scalar>& grid,
                                          std::vector<ProxyId>& found,
                                          ProxyFilter filter = acceptAll, ProxyId self = {});
 
-/// Finds the proxies whose box touches a cell, of Grid::cellSize(), that the ball's box touches (cells_region.hpp).
-/// These are all proxies within the radius, and others, none farther away than sqrt(3) * (radius + cell size). With
-/// agents half as large as cells, and radii of 1, 2, 4 and 8 cells, 1, 2, 3 and 4 in 10 of these are within the
-/// radius. findWithin() lists faster. To count, with a radius of several cells, use Grid::visit(CellsRegion,
-/// CollectCount). Returns the cost. Cost: at most as findWithin().
+/// Finds the proxies whose boxes touch any cell, of Grid::cellSize(), that the ball's box touches (cells_region.hpp).
+/// These are all proxies within the radius, and other proxies at most sqrt(3) * (radius + cell size) away. With
+/// agents half as large as cells, the ball contains 10 % of the found proxies at a radius of 1 cell, 20 % at 2, 30 %
+/// at 4 and 40 % at 8 cells. For lists, findWithin() is faster. To count, with a radius of several cells, use
+/// Grid::visit(CellsRegion, CollectCount). Returns the cost. Cost: at most as findWithin().
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost estimateWithin(const Grid<Scalar>& grid,
                                              const Vector3<std::type_identity_t<Scalar>>& position,

@@ -4,14 +4,15 @@
 // Finds the proxies that a viewer sees: within a range and a cone, without a blocker in between.
 //
 // Seen      A proxy is seen if its position (position_region.hpp) is in the cone, and the line from the eye to the
-//           position meets no blocker's box before its end. For exact shapes, use
+//           position meets no blocker's box before the position. For exact shapes, use
 //           SpatialHashBroadphase::closestRay().
-// Blockers  A filter chooses them. The viewer, the target, and boxes that contain the eye, such as a house, never
+// Blockers  A filter chooses blockers. The viewer, the target, and boxes that contain the eye, such as a house, never
 //           block.
-// Closed    The cone contains its surface, and a line that grazes a box meets it, except for rounding.
-// Threads   Reads the grid, as queries do. Sight::look() asks the filters on all threads of its loop.
-// Bad data  A viewer sees nothing with a negative or NaN range or half angle, an eye that is not finite, or a cone
-//           whose direction is zero or not finite. A proxy is not seen if the distance overflows.
+// Closed    The cone includes its surface, and a line that grazes a box meets the box, except for rounding.
+// Threads   All functions query the grid. Sight::look() calls the filters on all threads of `parallelFor`. No other
+//           thread may use the Sight object meanwhile.
+// Bad data  A viewer sees nothing if its range or half angle is negative or NaN, its eye is not finite, or its cone's
+//           direction is zero or not finite. A proxy is not seen if its distance overflows.
 
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -28,19 +29,19 @@
 
 namespace hashphase {
 
-/// An agent that looks. By default it looks everywhere from the origin.
+/// An agent that looks: by default from the origin in all directions.
 template <class Scalar>
 struct Viewer {
     Vector3<Scalar> eye = Vector3<Scalar>::Zero();           ///< [m]
     Vector3<Scalar> direction = Vector3<Scalar>::UnitX();    ///< of any length
     Scalar range = std::numeric_limits<Scalar>::infinity();  ///< [m]
-    /// Angle between the direction and the cone's surface [rad]. With pi or more the direction is ignored.
+    /// Angle between the direction and the cone's surface [rad]. With pi or more, the direction is ignored.
     Scalar halfAngle = std::numbers::pi_v<Scalar>;
     ProxyId self{};  ///< the viewer's own proxy, if it has one
 };
 
-/// Every proxy whose position is in the viewer's cone, also behind blockers. Key: squared distance [m^2] from the
-/// eye. A position at the eye is in every cone.
+/// A region of every proxy whose position is in the viewer's cone, even behind blockers. Key: squared distance [m^2]
+/// from the eye. A position at the eye is in every cone.
 template <class Scalar>
 class HASHPHASE_AI_TEMPLATE_EXPORT SightRegion {
 public:
@@ -57,44 +58,45 @@ private:
     }
 
     PositionRegion<Scalar> ball_;
-    Vector3<Scalar> direction_;  // about as long as 1
+    Vector3<Scalar> direction_;  // of length about 1
     Scalar halfAngle_;
 };
 
-/// Returns true if the line between the two points [m] meets no blocker's box before `to`. Ignores `viewer` and
-/// `target`. Returns false if an end or the distance is not finite. Cost: a ray that stops at the first blocker.
+/// Returns true if the line from `from` to `to` [m] meets no blocker's box before `to`. `viewer` and `target` never
+/// block. Returns false if an end or the distance is not finite. Cost: one ray, which ends at the first blocker.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_AI_EXPORT bool hasLineOfSight(
     const Grid<Scalar>& grid, const Vector3<std::type_identity_t<Scalar>>& from,
     const Vector3<std::type_identity_t<Scalar>>& to, ProxyFilter blockers = acceptAll,
     ProxyId viewer = {}, ProxyId target = {});
 
-/// Returns true if the viewer sees `target`; false for its own proxy, and for one that is not in the grid. Cost: at
-/// most as hasLineOfSight().
+/// Returns true if the viewer sees `target`; false for the viewer's own proxy, and for a proxy that is not in the
+/// grid. Cost: at most as hasLineOfSight().
 template <class Scalar>
 [[nodiscard]] HASHPHASE_AI_EXPORT bool canSee(const Grid<Scalar>& grid,
                                               const Viewer<Scalar>& viewer, ProxyId target,
                                               ProxyFilter blockers = acceptAll);
 
 /// Finds all proxies that `targets` accepts and the viewer sees. Replaces `seen`, sorted by id. Returns the cost.
-/// Cost: Grid::visit() of the cone, and a ray for each target in it.
+/// Cost: one Grid::visit() of the cone, and one ray for each target in the cone.
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost visibleFrom(const Grid<Scalar>& grid, const Viewer<Scalar>& viewer,
                                           std::vector<ProxyId>& seen,
                                           ProxyFilter targets = acceptAll,
                                           ProxyFilter blockers = acceptAll);
 
-/// visibleFrom() for many viewers. Keeps its memory: a frame like the last one allocates nothing.
+/// As visibleFrom(), for many viewers. Reuses its memory: a frame that needs no more than before allocates nothing.
 template <class Scalar>
 class HASHPHASE_AI_TEMPLATE_EXPORT Sight {
 public:
-    /// Looks for all viewers, and forgets earlier results. Returns the cost. Asserted: not called from a filter.
+    /// Finds what each viewer sees, and forgets earlier results. Returns the cost. Asserted: filters do not call
+    /// look().
     QueryCost look(const Grid<Scalar>& grid, std::span<const Viewer<Scalar>> viewers,
                    ProxyFilter targets = acceptAll, ProxyFilter blockers = acceptAll,
                    ParallelFor parallelFor = serialFor);
 
-    /// Returns the proxies that a viewer saw, sorted by id, valid until the next look(). Asserted: `viewer` is an
-    /// index of look()'s span.
+    /// Returns the proxies that a viewer saw in the last look(), sorted by id. Valid until the next look(). Asserted:
+    /// `viewer` is an index into the last `viewers`.
     [[nodiscard]] std::span<const ProxyId> seenBy(std::size_t viewer) const;
 
 private:

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Zones of interest: volumes that report which proxies enter, stay and leave (paper, "areas of interest"). Keep your
-// data about zones by ZoneId::index.
+// Zones of interest: volumes that report which proxies enter, stay and leave (paper, "areas of interest"). Index your
+// own data about zones by ZoneId::index.
 //
-// Frame      Move bodies and zones, then update() once. A proxy in a zone, or that left it, is in one event of that
-//            zone.
-// Grid       Zones are not in the grid. Pass the same grid always, or call forgetOccupants() before another one.
-//            After Grid::shiftOrigin(), set() every zone to its new place before the next update(): then occupants
+// Frame      Move bodies and zones, then call update() once. A proxy that is in a zone, or has left it, is in exactly
+//            one event of that zone.
+// Grid       Zones are not in the grid. Always pass the same grid, or call forgetOccupants() before you pass another.
+//            After Grid::shiftOrigin(), set() every zone to its new place before the next update(), so occupants
 //            stay.
-// Rollback   A copy is a snapshot with occupants. Assign it together with GridSnapshot::restore(): the next update()
-//            repeats its events. Earlier spans are invalid.
-// Threads    Const functions may run on any number of threads. All else needs this object for itself; update() reads
-//            the grid, as queries do.
-// Callbacks  Asked on all threads. Asserted: they neither change nor update zones.
-// Failure    If memory runs out or a callback throws, nothing has happened: the next update() reports the same
-//            events.
-// Bad data   A zone with a NaN or a negative radius holds no proxy. For inverted boxes, see overlaps().
-// Misuse     Asserted: ids are valid. An id of other Zones may pass for one of these.
+// Rollback   A copy is a snapshot, occupants included. To roll back, assign it, and call GridSnapshot::restore(): the
+//            next update() repeats the events. Earlier spans are invalid.
+// Threads    Const functions may run on several threads at once. During other calls, no other thread may use this
+//            object. update() is a query of the grid.
+// Callbacks  run on all threads of `parallelFor`. Asserted: they do not change or update zones.
+// Failure    If memory runs out or a callback throws, no zone changes. The next update() reports the missed events.
+// Bad data   A zone with a NaN or a negative radius contains no proxy. For inverted boxes, see overlaps().
+// Misuse     Asserted: ids are valid. An id of another Zones object may go unnoticed.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/grid.hpp>
@@ -35,12 +34,12 @@
 
 namespace hashphase {
 
-/// Names one zone; zero is null. As in a ProxyId, `index` is small and dense.
+/// Identifies one zone. As in a ProxyId, indices are small and dense.
 struct ZoneId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
 
-    /// True for ZoneId{}, which names no zone.
+    /// True for ZoneId{}, which identifies no zone.
     [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
     friend constexpr auto operator<=>(const ZoneId&, const ZoneId&) = default;
 };
@@ -58,7 +57,7 @@ struct Zone {
     Presence presence = Presence::position;
 };
 
-/// A zone, and a proxy that entered, stayed or left. Ordered by zone, then by proxy.
+/// A zone, and a proxy that entered, stayed in or left the zone. Ordered by zone, then by proxy.
 struct ZoneEvent {
     ZoneId zone;
     ProxyId proxy;
@@ -66,69 +65,71 @@ struct ZoneEvent {
     friend constexpr auto operator<=>(const ZoneEvent&, const ZoneEvent&) = default;
 };
 
-/// The events between two updates, each list sorted by zone, then by proxy.
+/// The events between two updates. Lists are sorted by zone, then by proxy.
 struct ZoneEvents {
     std::span<const ZoneEvent> entered;
     std::span<const ZoneEvent> stayed;
-    /// Includes removed proxies and zones, by their old ids.
+    /// Includes removed proxies and removed zones, under their old ids.
     std::span<const ZoneEvent> left;
 };
 
-/// Returns whether a proxy counts in a zone. Asked only about proxies in the zone. A proxy that it accepted before
-/// and refuses now leaves the zone.
+/// Returns whether a proxy counts as an occupant of a zone. Called only for proxies in the zone. An occupant that the
+/// filter refuses leaves the zone.
 using ZoneFilter = FunctionRef<bool(ZoneId, ProxyId)>;
 
 [[nodiscard]] inline bool acceptAllInZones(ZoneId /*zone*/, ProxyId /*proxy*/) noexcept {
     return true;
 }
 
-/// Returns whether an update searches a zone.
+/// Returns whether update() searches a zone.
 using ZoneChoice = FunctionRef<bool(ZoneId)>;
 
 [[nodiscard]] inline bool allZones(ZoneId /*zone*/) noexcept {
     return true;
 }
 
-/// Watches zones. Keeps its memory: a frame like the last one allocates nothing.
+/// Watches zones. Reuses its memory: a frame that needs no more than before allocates nothing.
 template <class Scalar>
 class HASHPHASE_AI_TEMPLATE_EXPORT Zones {
 public:
     // --- Zones -----------------------------------------------------------------------------------
 
-    /// Adds a zone, empty until the next update(). Returns its id. Cost: O(1) amortised.
+    /// Adds a zone, without occupants until the next update(). Returns its id. Cost: O(1) amortised.
     [[nodiscard]] ZoneId add(const Zone<Scalar>& zone);
 
-    /// Moves, resizes or reshapes a zone, for the next update(). Cost: O(1).
+    /// Moves, resizes or reshapes a zone. The next update() uses the new shape. Cost: O(1).
     void set(ZoneId id, const Zone<Scalar>& zone);
 
-    /// Removes a zone. Its id is never valid again. Its occupants leave in the next update(). Cost: O(occupants).
+    /// Removes a zone. Its id is never valid again. The next update() reports its occupants as left. Cost:
+    /// O(occupants).
     void remove(ZoneId id);
 
     [[nodiscard]] bool contains(ZoneId id) const noexcept;
     [[nodiscard]] const Zone<Scalar>& zone(ZoneId id) const;
     [[nodiscard]] std::size_t size() const noexcept { return slots_.size() - freeSlots_.size(); }
 
-    /// Empties all zones without events. Call it before another grid replaces this one.
+    /// Forgets the occupants of all zones, without events. Call it before you pass another grid.
     void forgetOccupants() noexcept;
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Finds the proxies in each zone. Returns the changes since the last update(), valid until the next. `due` is
-    /// asked once about each zone. A refused zone keeps its occupants, removed ones included, and has no events; its
-    /// next search reports all changes since. Cost: Grid::visit() of each due zone, and the sum of the occupants.
+    /// Finds the proxies in each zone. Returns the changes since the last update(), valid until the next update().
+    /// Calls `due` once for each zone. If `due` refuses a zone, the zone keeps its occupants, even removed proxies,
+    /// and has no events. The zone's next search reports all changes since. Cost: one Grid::visit() of each due zone,
+    /// and O(occupants).
     ZoneEvents update(const Grid<Scalar>& grid, ZoneFilter filter = acceptAllInZones,
                       ZoneChoice due = allZones, ParallelFor parallelFor = serialFor);
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// The zone's proxies at the last update(), sorted by id. Valid until the next update().
+    /// The proxies that were in the zone at its last search, sorted by id. Valid until the next update().
     [[nodiscard]] std::span<const ProxyId> occupants(ZoneId id) const;
 
-    /// Finds the zones that contain the point [m] now. Replaces `found`, sorted by id; empty if the point is not
-    /// finite. Cost: O(zones).
+    /// Finds the zones whose present shapes contain the point [m]. Replaces `found`, sorted by id; empty if the point
+    /// is not finite. Cost: O(zones).
     void zonesAt(const Vector3<Scalar>& point, std::vector<ZoneId>& found) const;
 
-    /// Cost of the last update(). Hits are boxes found, before presence and filter.
+    /// Cost of the last update(). Its hits are boxes that touch zones, before presence and filter decide.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
 
     /// Bytes held, capacity included. Cost: O(zones).
@@ -138,10 +139,10 @@ private:
     struct Slot {
         Zone<Scalar> zone;
         std::uint32_t generation = 0;    // odd while the slot has a zone
-        std::vector<ProxyId> occupants;  // at the last update
-        std::vector<ProxyId> found;      // by the one under way
+        std::vector<ProxyId> occupants;  // of the last update
+        std::vector<ProxyId> found;      // by the update under way
         QueryCost cost;
-        bool isDue = false;  // the update under way looks into it
+        bool isDue = false;  // the update under way searches the zone
     };
 
     [[nodiscard]] const Slot& slot(ZoneId id) const;
@@ -166,6 +167,6 @@ extern template class Zones<double>;
 
 }  // namespace hashphase
 
-/// For keys of std::unordered_map.
+/// Allows a ZoneId as key of std::unordered_map.
 template <>
 struct std::hash<hashphase::ZoneId> : hashphase::detail::IdHash<hashphase::ZoneId> {};

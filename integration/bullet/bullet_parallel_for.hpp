@@ -3,10 +3,10 @@
 
 // Runs the loops of the broadphase on the threads of Bullet's task scheduler: see btSetTaskScheduler().
 //
-// Scheduler Without one, loops run on the caller's thread. A Bullet without threads (BT_THREADSAFE) has none, but
-//           takes your own.
-// Lifetime  Keep the result of btCreateDefaultTaskScheduler() until the program ends: its destructor may overwrite
-//           memory of the program (a fault in btThreadSupportPosix::waitForResponse()).
+// Scheduler Without a scheduler, loops run on the caller's thread. A Bullet built without BT_THREADSAFE has no
+//           scheduler, but takes your own.
+// Lifetime  Keep the result of btCreateDefaultTaskScheduler() until the program ends. Its destructor may overwrite
+//           memory of the program (a bug in btThreadSupportPosix::waitForResponse()).
 
 #include <broadphase/core/first_exception.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -21,8 +21,8 @@
 
 namespace hashphase {
 
-/// A ParallelFor: config.parallelFor = hashphase::bulletFor. Throws on the caller's thread, after all threads have
-/// ended, the first exception of the loop, such as std::bad_alloc.
+/// A ParallelFor: config.parallelFor = hashphase::bulletFor. If the loop throws, for example std::bad_alloc, waits
+/// for all threads, and rethrows the first exception on the caller's thread.
 inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
     struct Body : btIParallelForBody {
         const LoopBody& loop;
@@ -39,11 +39,11 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
         return;
     }
     btITaskScheduler* const scheduler = btGetTaskScheduler();
-    if (scheduler == nullptr || count > kMost) {  // more than Bullet can count
+    if (scheduler == nullptr || count > kMost) {  // count is too large for Bullet
         body(0, count);
     } else {
         detail::FirstException exception;
-        // btParallelFor() needs a Bullet with threads.
+        // Not btParallelFor(), which needs a Bullet with threads.
         scheduler->parallelFor(0, static_cast<int>(count),
                                static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)),
                                Body(body, exception));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Conversions between Bullet's vectors and the grid's, without rounding: both use btScalar. NaN and infinite
-// coordinates stay as they are.
+// Conversions between the vectors of Bullet and the grid. Nothing is rounded, because both use btScalar. NaN and
+// infinite coordinates stay unchanged.
 //
 //     const Aabb<btScalar> box = toAabb(aabbMin, aabbMax);
 //     broadphase.grid().visit(BoxRegion<btScalar>{box}, collector);
@@ -14,12 +14,12 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Returns the three coordinates, without Bullet's fourth number.
+/// Returns the three coordinates, without Bullet's fourth component.
 [[nodiscard]] inline Vector3<btScalar> toEigen(const btVector3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-/// Returns the three coordinates; Bullet's fourth number is 0.
+/// Returns the three coordinates; Bullet's fourth component is 0.
 [[nodiscard]] inline btVector3 toBullet(const Vector3<btScalar>& v) {
     return {v.x(), v.y(), v.z()};
 }
@@ -31,7 +31,7 @@ using hashphase::isSameBits;
     return isSameBits(a.x(), b.x()) && isSameBits(a.y(), b.y()) && isSameBits(a.z(), b.z());
 }
 
-/// Returns the box between two corners as they are: inverted if min > max.
+/// Returns the box from `min` to `max`; it is inverted if min > max.
 [[nodiscard]] inline Aabb<btScalar> toAabb(const btVector3& min, const btVector3& max) {
     return {toEigen(min), toEigen(max)};
 }

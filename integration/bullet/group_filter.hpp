@@ -11,18 +11,18 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// A ProxyFilter by Bullet's rule: accepts a proxy if its group is in the asker's mask, and the asker's group in
-/// its mask:
+/// A ProxyFilter by Bullet's rule. Accepts a proxy if its group is in the asker's mask, and the asker's group in the
+/// proxy's mask:
 ///
 ///     const GroupFilter enemies(broadphase, {.mask = kEnemyGroup});
 ///     const Picked<btScalar> picked = pickNearest(broadphase.grid(), ray, enemies);
 ///
-/// Sees changes of a proxy's group and mask at once. The broadphase must outlive the filter. Cost: O(1). Threads:
-/// any number at the same time.
+/// Sees changes of a proxy's group and mask at once. The broadphase must outlive the filter. Cost: O(1). Threads: any
+/// number at the same time.
 class GroupFilter {
 public:
-    /// The asking side, like m_collisionFilterGroup and m_collisionFilterMask of a ray callback. By default it has
-    /// all groups and wants all groups.
+    /// The asker's group and mask, like m_collisionFilterGroup and m_collisionFilterMask of a ray callback. By
+    /// default, the asker has all groups and wants all groups.
     struct Asker {
         int group = btBroadphaseProxy::AllFilter;  ///< groups of the asker
         int mask = btBroadphaseProxy::AllFilter;   ///< groups that the asker wants
@@ -32,7 +32,7 @@ public:
         : broadphase_(&broadphase), asker_(asker) {}
     GroupFilter(const SpatialHashBroadphase&&, const Asker&) = delete;
 
-    /// Returns whether both groups and masks accept each other. Asserted: the proxy is alive.
+    /// Returns whether the groups and masks of asker and proxy accept each other. Asserted: the proxy is alive.
     [[nodiscard]] bool operator()(ProxyId id) const {
         const btBroadphaseProxy* proxy = broadphase_->proxyOf(id);
         return (proxy->m_collisionFilterGroup & asker_.mask) != 0 &&

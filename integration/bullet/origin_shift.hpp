@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Moves the origin of a whole Bullet world. Far from the origin numbers are coarse: bodies jitter and joints drift.
-// Shift the origin now and then to keep it near the player. Contacts stay, and no body wakes.
+// Moves the origin of a whole Bullet world. Far from the origin, coordinates are coarse: bodies jitter and joints
+// drift. Shift the origin from time to time to keep it near the player. Contacts stay, and no body wakes up.
 //
-// A frame  Call it between two steps.
-// Shift    Use multiples of a power of two, such as 1024 m, towards the bodies. Then nothing is rounded there, and
-//          relative positions stay equal to the bit.
-// Threads  Needs the world for itself.
+// A frame  Call shiftWorldOrigin() between two steps.
+// Shift    Shift towards the bodies, by multiples of a power of two such as 1024 m. In that case, their coordinates
+//          are not rounded, and relative positions keep all bits.
+// Threads  No other thread may use the world during the call.
 // Memory   Throws std::bad_alloc when memory runs out, and shifts nothing.
-// Misuse   Asserted: the broadphase is the world's, the shift is finite, and there are no soft bodies or
-//          multibodies, whose coordinates are not known here. Otherwise returns false and shifts nothing.
-// RTTI     Only a btCollisionWorld needs it, to show whether it is a btDynamicsWorld. Without RTTI (-fno-rtti,
-//          MSVC) it must have no rigid bodies. Asserted, as above.
+// Misuse   Asserted: the world uses this broadphase, the shift is finite, and there are no soft bodies or
+//          multibodies, which cannot be shifted. Otherwise returns false and shifts nothing.
+// RTTI     The call for a btCollisionWorld needs RTTI, to see whether that world is a btDynamicsWorld. Without RTTI
+//          (-fno-rtti, MSVC), that world must have no rigid bodies. Asserted, as above.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -23,12 +23,12 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Moves the world's origin to `shift` [m]: subtracts it from the transforms of collision objects and their
-/// interpolation, from motion states, contact points, joints between a body and the world, and the broadphase's
-/// boxes. Velocities, sleep, contacts and pairs stay. Reads and sets each motion state, even if its body rests.
-/// Shift all else yourself: bodies outside the world, zones, cameras, terrains.
-/// Returns whether the world was shifted; if not, nothing has changed. Cost: a look at each object, contact and
-/// joint, and SpatialHashBroadphase::shiftOrigin().
+/// Moves the world's origin to `shift` [m]. Subtracts `shift` from the transforms and interpolation transforms of
+/// collision objects, from motion states, contact points, joints between a body and the world, and the broadphase's
+/// boxes. Velocities, sleep, contacts and pairs stay. Reads and sets each motion state, even if its body rests. Shift
+/// everything else yourself: bodies outside the world, zones, cameras, terrains.
+/// Returns whether the world was shifted; if false, nothing has changed. Cost: O(objects + contacts + joints), and
+/// SpatialHashBroadphase::shiftOrigin().
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btDynamicsWorld& world,
                                                             SpatialHashBroadphase& broadphase,
                                                             const btVector3& shift);

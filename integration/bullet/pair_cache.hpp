@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A pair cache for Bullet that removes a body in time proportional to its pairs; Bullet's own cache scans all
-// pairs, twice. Works under any broadphase and in any world:
+// A pair cache for Bullet that removes a body in time proportional to the body's pairs. Bullet's cache scans all
+// pairs twice. A PairCache works under any broadphase and in any world:
 //
 //     hashphase::PairCache pairCache;
 //     btDbvtBroadphase broadphase(&pairCache);
 //
-// Threads   needsBroadphaseCollision() and const members run anywhere. Everything else needs the cache for itself,
-//           as in Bullet.
-// Pointers  A pair stays in place until a pair is added or removed, or memory is given back; in canonical order
-//           also until the whole array is read next. Do not resize or reorder the array.
-// Callbacks of ghosts, processAllOverlappingPairs() and freed algorithms see the cache after the change, and may
-//           change it. The filter must not.
-// Removal   Under a SpatialHashBroadphase, a removed pair returns in the next calculation, unless the filter
-//           refuses it. In canonical order, its algorithm is freed when the whole array is read next, or pairs of a
-//           proxy are removed or cleaned; otherwise at once.
-// Memory    Throws std::bad_alloc when memory runs out. A single call has then changed nothing; a batch has removed
-//           some or all of its pairs, and added none. Removing the pairs of one proxy takes no memory then, but
-//           scans all pairs. Bullet's own arrays do not report a lack of memory.
+// Threads   Const members may run on several threads at once. During other calls, no other thread may use the cache.
+// Pointers  Pairs move in memory when a pair is added or removed, and in releaseUnusedMemory(). In canonical order,
+//           they also move when the whole array is read. Do not resize or reorder the array.
+// Callbacks Ghost callbacks, callbacks of processAllOverlappingPairs() and destructors of freed algorithms run after
+//           the change that caused them, and may change the cache. The filter must not change the cache.
+// Removal   Pairs that the program removes return in the next calculation of a SpatialHashBroadphase, unless the
+//           filter refuses them. In canonical order, their algorithms are freed when the whole array is next read, or
+//           when the pairs of a proxy are removed or cleaned. Otherwise they are freed at once.
+// Memory    Throws std::bad_alloc when memory runs out. In that case, a single call has changed nothing; a batch has
+//           removed some or all of its pairs, and added none. Removing the pairs of one proxy still works, by a scan
+//           of all pairs. Bullet's own arrays do not report a lack of memory.
 // NULL      A NULL dispatcher frees no algorithms, as in Bullet. Clients may be NULL.
 // Misuse    Asserted: a pair has two different proxies, unique ids of live proxies differ and are not negative, and
 //           the filter does not change the cache.
@@ -51,17 +50,18 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// The order of the pairs in the array.
 enum class PairOrder {
-    /// As pairs came and went: equal after equal calls on an empty cache, and as in Bullet's cache except after
-    /// batches. Boxes that are set back to an earlier frame bring back its pairs, not their places. Cost: none.
+    /// New pairs go to the end. The last pair takes the place of a removed pair, as in Bullet's cache except in
+    /// batches. Equal calls on an empty cache give an equal order. Setting boxes back to an earlier frame restores
+    /// the pairs, but not their order. Cost: none.
     arrival,
-    /// Ascending by the keys of both proxies, whenever the whole array is read: equal sets of pairs give an equal
-    /// order, under any broadphase. For programs that set boxes back themselves; WorldSnapshot does not need it.
-    /// Frees algorithms in this order too, so manifolds, and whole trajectories, are equal under all exact
-    /// broadphases. Cost: a sort when the set has changed.
+    /// Sorted ascending by the keys of both proxies, whenever the whole array is read. Equal sets of pairs have an
+    /// equal order under any broadphase. For programs that set boxes back to an earlier frame; WorldSnapshot does not
+    /// need this order. Algorithms are freed in this order too, so manifolds and whole trajectories are equal under
+    /// all exact broadphases. Cost: a sort after the set of pairs has changed.
     canonical,
 };
 
-/// Returns the number that orders proxies; m_uniqueId decides ties. It must not change while the proxy has pairs.
+/// Returns a proxy's sort key; m_uniqueId decides between equal keys. It must not change while the proxy has pairs.
 using ProxyKey = int (*)(const btBroadphaseProxy&);
 
 /// Two proxies with their unique ids, so that a batch need not read the proxies.
@@ -72,21 +72,21 @@ public:
     BulletProxyPair(btBroadphaseProxy& a, btBroadphaseProxy& b) noexcept
         : BulletProxyPair(a, a.m_uniqueId, b, b.m_uniqueId) {}
 
-    /// Not checked: the ids belong to the proxies.
+    /// The ids must be these proxies' unique ids (not checked).
     BulletProxyPair(btBroadphaseProxy& a, int idOfA, btBroadphaseProxy& b, int idOfB) noexcept
         : lower_(idOfA < idOfB ? &a : &b),
           upper_(idOfA < idOfB ? &b : &a),
           ids_(std::uint64_t{static_cast<std::uint32_t>(idOfA < idOfB ? idOfA : idOfB)} << 32 |
                static_cast<std::uint32_t>(idOfA < idOfB ? idOfB : idOfA)) {}
 
-    /// Returns the proxy with the lower, or the higher, unique id.
+    /// Returns the proxy with the lower unique id; upper() returns the other.
     [[nodiscard]] btBroadphaseProxy* lower() const noexcept { return lower_; }
     [[nodiscard]] btBroadphaseProxy* upper() const noexcept { return upper_; }
 
-    /// Returns both unique ids, the lower one in the upper 32 bits.
+    /// Returns both unique ids; the lower id is in the upper 32 bits.
     [[nodiscard]] std::uint64_t ids() const noexcept { return ids_; }
 
-    /// Returns false if one of the two has another unique id now, as after its destruction.
+    /// Returns false if the unique id of a proxy has changed, as when the proxy is destroyed.
     [[nodiscard]] bool isUpToDate() const noexcept {
         return static_cast<std::uint32_t>(lower_->m_uniqueId) == ids_ >> 32 &&
                static_cast<std::uint32_t>(upper_->m_uniqueId) == (ids_ & 0xffffffffU);
@@ -103,8 +103,8 @@ using ProxyCouple [[deprecated("BulletProxyPair")]] = BulletProxyPair;
 /// A btOverlappingPairCache with fast removal.
 class HASHPHASE_BULLET_EXPORT PairCache final : public btOverlappingPairCache {
 public:
-    /// m_pProxy0 of a pair has the lower key. The default key orients pairs as Bullet does; choose another for
-    /// broadphases that reuse unique ids. Asserted: `key` is not null.
+    /// m_pProxy0 of a pair is the proxy with the lower key: by default the lower unique id, as in Bullet. Pass
+    /// another key for broadphases that reuse unique ids. Asserted: `key` is not null.
     explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId)
         : order_(order), key_(key) {
         HASHPHASE_ASSERT(key != nullptr,
@@ -115,7 +115,7 @@ public:
     PairCache(const PairCache&) = delete;
     PairCache& operator=(const PairCache&) = delete;
 
-    /// The default key. Not inline: it is known by its address.
+    /// The default key. Not inline, because the cache compares its address.
     static int uniqueId(const btBroadphaseProxy& proxy);
 
     /// The most pairs that Bullet's array can hold.
@@ -123,7 +123,7 @@ public:
 
     // --- One pair --------------------------------------------------------------------------------
 
-    /// Returns the pair of the two proxies, added if missing; NULL if the filter refuses it. Calls the ghost
+    /// Returns the pair, and adds it if it is missing. Returns NULL if the filter refuses it. Calls the ghost
     /// callback for a new pair. Throws std::length_error beyond kMostPairs, and changes nothing. Cost: O(1).
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
                                          btBroadphaseProxy* proxy1) override;
@@ -132,11 +132,11 @@ public:
     btBroadphasePair* addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1);
 
     /// Removes the pair, frees its algorithm and calls the ghost callback. Returns the pair's m_internalInfo1; NULL
-    /// if there is no such pair. Cost: O(1).
+    /// without such a pair. Cost: O(1).
     void* removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
                                 btDispatcher* dispatcher) override;
 
-    /// Returns the pair, without asking the filter; NULL if there is none. Cost: O(1).
+    /// Returns the pair; NULL if it is missing. Does not ask the filter. Cost: O(1).
     btBroadphasePair* findPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) override;
 
     /// Frees the pair's algorithm and keeps the pair.
@@ -145,12 +145,12 @@ public:
     // --- Many pairs ------------------------------------------------------------------------------
 
     /// Removes the pairs `died`, then adds the pairs `born` without asking the filter. Skips died pairs that are
-    /// missing, and born pairs that are present. Order of arrival: the first born pairs take the places of the
-    /// first died ones; further born pairs go to the end, or pairs from the end fill places that are left. With a
-    /// ghost callback, or called within processAllOverlappingPairs(), does exactly what single calls do. Uses
-    /// `parallelFor` for thousands of pairs, with an equal result; callbacks run on the caller's thread. Throws
-    /// std::length_error, and changes nothing, if present and born pairs exceed kMostPairs. Cost: O(1) a pair, a
-    /// third of single calls.
+    /// missing, and born pairs that are present. In order of arrival, the first born pairs take the places of the
+    /// first died pairs. Further born pairs go to the end; if fewer are born, pairs from the end fill the gaps. If a
+    /// ghost callback is set, or within processAllOverlappingPairs(), works exactly like single calls. Uses
+    /// `parallelFor` for thousands of pairs, with an equal result. Callbacks run on the caller's thread. Throws
+    /// std::length_error, and changes nothing, if present and born pairs exceed kMostPairs. Cost: O(1) for each pair;
+    /// single calls cost three times as much.
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                 btDispatcher* dispatcher, ParallelFor parallelFor);
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
@@ -158,50 +158,50 @@ public:
 
     // --- The pairs of one proxy ------------------------------------------------------------------
 
-    /// Removes the proxy's pairs one by one as removeOverlappingPair() does, in canonical order or in the order of
-    /// Bullet's cache. Cost: the proxy's pairs, and O(1), amortised, for each pair added since the last such call;
-    /// after a sort or a large update() for each pair.
+    /// Removes the proxy's pairs one by one, in canonical order or in Bullet's order. Frees their algorithms at once.
+    /// Cost: the proxy's pairs, and amortised O(1) for each pair added since the last such call. After a sort or a
+    /// large update(), all pairs count as added.
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
-    /// Frees the algorithms of the proxy's pairs and keeps the pairs. Order and cost: as for removal. Ghosts keep
-    /// their own algorithms.
+    /// Frees the algorithms of the proxy's pairs and keeps the pairs. Order and cost: as for removal. Ghost objects
+    /// keep their own algorithms.
     void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// As cleanProxyFromPairs(), and calls the ghost callback as if each pair had been removed and added, so that
-    /// ghosts free their algorithms too.
+    /// As cleanProxyFromPairs(). Also calls the ghost callback as if each pair had been removed and added again, so
+    /// that ghost objects free their algorithms too.
     void renewPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     // --- The pairs of many proxies ---------------------------------------------------------------
 
-    /// Removes the pairs of each proxy in turn, and then frees algorithms: in canonical order as single calls do,
-    /// otherwise in any order. The order of arrival differs from single calls. With a ghost callback, or called
-    /// within processAllOverlappingPairs(), does exactly what single calls do. Cost: the proxies' pairs, and at
-    /// most one pass over all pairs.
+    /// Removes the pairs of each proxy in turn, and afterwards frees their algorithms. In canonical order, frees them
+    /// in the order of single calls. In order of arrival, frees them in any order, and may order pairs differently
+    /// than single calls. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like
+    /// single calls. Cost: the proxies' pairs, and at most one pass over all pairs.
     void removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                  btDispatcher* dispatcher);
 
     // --- All pairs -------------------------------------------------------------------------------
 
-    /// Calls callback->processOverlap() for every pair, and removes the pairs for which it returns true. The
-    /// callback may add pairs, which it is shown too, and remove any pair. If it removes others than the shown one,
-    /// some may be skipped this time. Cost: O(pairs), with added ones: the call ends when the callback adds no
-    /// more.
+    /// Calls callback->processOverlap() for every pair, and removes the pairs for which it returns true. The callback
+    /// may add pairs, and is called for them, too. It may remove any pair. If it removes a pair other than its
+    /// argument, this call may skip some pairs. Cost: O(pairs), including added pairs. Does not return while the
+    /// callback keeps adding pairs.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) override;
 
-    /// As above. With dispatchInfo.m_deterministicOverlappingPairs, by descending unique ids, as Bullet's cache;
-    /// added pairs then wait for the next call.
+    /// As above. With dispatchInfo.m_deterministicOverlappingPairs, calls the callback by descending unique ids, as
+    /// Bullet's cache does. In that case, pairs that the callback adds wait for the next call.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
                                     const btDispatcherInfo& dispatchInfo) override;
 
     [[nodiscard]] int getNumOverlappingPairs() const override { return pairs_.size(); }
 
-    /// Returns the array, in canonical order if chosen. Within processAllOverlappingPairs(), changes by its
-    /// callback are sorted in afterwards.
+    /// Returns the array, in canonical order if chosen. Changes by a callback of processAllOverlappingPairs() are
+    /// sorted in after that call.
     btBroadphasePair* getOverlappingPairArrayPtr() override;
     btBroadphasePairArray& getOverlappingPairArray() override;
 
-    /// Returns the array as it is, with changes since the last non-const call not sorted in.
+    /// Returns the array without sorting it: changes since the last non-const call may be out of order.
     [[nodiscard]] const btBroadphasePair* getOverlappingPairArrayPtr() const override;
 
     /// Brings the array into canonical order once, with either PairOrder. Unlike Bullet's caches, keeps algorithms
@@ -213,11 +213,11 @@ public:
 
     // --- Callbacks -------------------------------------------------------------------------------
 
-    /// Asks the filter callback; without one, groups and masks decide, both ways. Returns false for two proxies
-    /// that the broadphase ignores, or of different worlds of a WorldsBroadphase.
+    /// Asks the filter callback. Without a callback, the group of each proxy must be in the mask of the other.
+    /// Returns false for pairs that the broadphase ignores, and between worlds of a WorldsBroadphase.
     [[nodiscard]] bool needsBroadphaseCollision(btBroadphaseProxy* proxy0,
                                                 btBroadphaseProxy* proxy1) const override;
-    /// As needsBroadphaseCollision(), but asks neither for ignored pairs nor for worlds.
+    /// As needsBroadphaseCollision(), but does not check for ignored pairs and worlds.
     [[nodiscard]] bool doFiltersAccept(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) const {
         if (filter_ != nullptr) {
             const detail::QueryScope scope(this);
@@ -225,21 +225,22 @@ public:
         }
         return doGroupsAccept(*proxy0, *proxy1);
     }
-    /// Returns whether groups and masks accept the two, both ways.
+    /// Returns whether the group of each proxy is in the mask of the other.
     [[nodiscard]] static bool doGroupsAccept(const btBroadphaseProxy& a,
                                              const btBroadphaseProxy& b) noexcept {
         return (a.m_collisionFilterGroup & b.m_collisionFilterMask) != 0 &&
                (b.m_collisionFilterGroup & a.m_collisionFilterMask) != 0;
     }
-    /// Returns the filter callback. If none is set, but the broadphase may refuse pairs, returns one that asks
-    /// groups and masks: Bullet's casts of fast bodies call needsBroadphaseCollision() only if there is one.
+    /// Returns the filter callback. If none is set but the broadphase may refuse pairs, returns a callback that
+    /// checks groups and masks. Without a callback, Bullet's casts of fast bodies do not call
+    /// needsBroadphaseCollision().
     btOverlapFilterCallback* getOverlapFilterCallback() override;
     /// Sets the callback; NULL for none.
     void setOverlapFilterCallback(btOverlapFilterCallback* callback) override;
     [[nodiscard]] bool hasFilterCallback() const noexcept { return filter_ != nullptr; }
 
     /// Sets the callback that is called once for each added and each removed pair; NULL for none. As in Bullet's
-    /// caches, not for present pairs.
+    /// caches, it is not called for present pairs.
     void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
         ghosts_ = callback;
     }
@@ -253,37 +254,38 @@ public:
         return static_cast<std::size_t>(pairs_.capacity());
     }
 
-    /// Returns how many pairs were listed so far to remove or clean the pairs of proxies.
+    /// Returns how many pairs the calls that remove or clean pairs of proxies have listed so far.
     [[nodiscard]] std::uint64_t pairsVisited() const noexcept { return pairsVisited_; }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back unused memory; pairs move. A SpatialHashBroadphase calls it by itself. Asserted: not within the
-    /// filter. Cost: O(pairs).
+    /// Frees unused memory; pairs move. A SpatialHashBroadphase calls this function by itself. Asserted: not within
+    /// the filter. Cost: O(pairs).
     void releaseUnusedMemory() noexcept;
 
-    /// Returns the broken invariant in a sentence; empty if all hold:
+    /// Returns a sentence about the broken invariant; empty if all hold:
     /// - Every pair is found by the unique ids of its proxies.
     /// - Every pair has the proxy with the lower key first.
-    /// - Every chained pair is chained once to each of its proxies.
-    /// - An array that counts as sorted is in canonical order.
+    /// - Every chained pair is once in the chain of each of its proxies.
+    /// - An array that is marked as sorted is in canonical order.
     [[nodiscard]] std::string validate() const;
 
     // --- For a broadphase ------------------------------------------------------------------------
 
-    /// Which side removes a pair: a broadphase must know which pairs others take out.
+    /// Who removes a pair: a broadphase must know which pairs others remove.
     enum class Remover { broadphase, other };
 
-    /// removeOverlappingPairsContainingProxies(), by this remover.
+    /// removeOverlappingPairsContainingProxies() on behalf of `remover`.
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
                        Remover remover);
 
-    /// The object that hears of pairs that others take out; null for none.
+    /// The object that is notified of pairs that others remove; null for none.
     [[nodiscard]] detail::CacheWatcher* watcher() const noexcept { return watcher_; }
     void setWatcher(detail::CacheWatcher* watcher) noexcept { watcher_ = watcher; }
 
 private:
-    // A pair has two edges, chained by proxy: 2 * its index for the lower unique id, and that + 1.
+    // A pair has an edge in the chain of each proxy: edge 2 * index for the lower unique id, and the next edge for
+    // the other.
     struct Link {
         std::uint32_t next;
         std::uint32_t previous;
@@ -291,10 +293,10 @@ private:
 
     // The sort keys of a pair.
     struct PairSortKey {
-        std::uint64_t keys;  // of first and second proxy, ascending as unsigned
+        std::uint64_t keys;  // of both proxies, in an order-preserving unsigned form
         std::uint64_t uniqueIds;
         std::uint32_t index;
-        std::uint32_t rank = 0;  // of its first proxy within a batch
+        std::uint32_t rank = 0;  // position of its first proxy in a batch
 
         friend bool operator<(const PairSortKey& a, const PairSortKey& b) noexcept {
             return a.keys != b.keys ? a.keys < b.keys : a.uniqueIds < b.uniqueIds;
@@ -306,9 +308,9 @@ private:
     class Processing;
 
     static constexpr std::uint32_t kNone = detail::FlatSet::kNone;
-    static constexpr std::uint64_t kLowerHalf = 0xffffffffU;  // of two unique ids
+    static constexpr std::uint64_t kLowerHalf = 0xffffffffU;  // mask for the higher unique id
 
-    // A removed pair whose algorithm waits to be freed in its turn.
+    // A removed pair whose algorithm is not freed yet.
     struct Retired {
         PairSortKey note;
         btBroadphasePair pair;
@@ -396,25 +398,25 @@ private:
     btOverlappingPairCallback* ghosts_ = nullptr;
 
     btBroadphasePairArray pairs_;
-    detail::FlatSet ids_;           // of each pair, by its index: both unique ids, lower one on top
-    std::vector<Link> links_;       // by edge
+    detail::FlatSet ids_;           // BulletProxyPair::ids(), in the order of pairs_
+    std::vector<Link> links_;       // by edge number
     detail::RunMap firstEdge_;      // unique id -> first edge of the proxy's chain
-    std::size_t pairsScanned_ = 0;  // instead of chaining, since the last chaining
+    std::size_t pairsScanned_ = 0;  // unchained pairs scanned since the last chaining
     std::uint64_t pairsVisited_ = 0;
     bool isSorted_ = true;
-    int processDepth_ = 0;  // processAllOverlappingPairs() calls under way
+    int processDepth_ = 0;  // nested processAllOverlappingPairs() calls
 
     std::vector<Retired> retired_;
 
     detail::CacheWatcher* watcher_ = nullptr;
 
-    std::vector<std::uint32_t> places_;        // scratch: vacant in batches, new in sort()
+    std::vector<std::uint32_t> places_;        // scratch: vacant or new indices
     std::unique_ptr<detail::KeyParts> parts_;  // scratch of batches on threads
     detail::ProxyRanks ranks_;                 // scratch of removals
     std::vector<PairSortKey> scratch_;
 };
 
-// Bullet's constructor for two proxies orients by unique id.
+// Bullet's constructor for two proxies would order them by unique id.
 inline void PairCache::name(const BulletProxyPair& proxies, btBroadphasePair& pair) const {
     HASHPHASE_ASSERT(proxies.ids() >> 32 != (proxies.ids() & kLowerHalf),
                      "PairCache: both proxies of a pair have one m_uniqueId. Use different ids.");

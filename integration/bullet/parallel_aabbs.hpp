@@ -10,11 +10,11 @@
 //     hashphase::ParallelAabbs<btDiscreteDynamicsWorldMt> world(&dispatcher, &broadphase, solvers, nullptr,
 //                                                               &configuration);
 //
-// Threads   SpatialHashConfig::parallelFor of the broadphase. Without it, or with any other broadphase, the world
-//           does what World does.
-// Shapes    Their getAabb() runs on several threads at once, also for one shape. Bullet's shapes allow this.
-// Callbacks All boxes are computed before the first is set. If a callback of the pair cache changes an object, this
-//           counts from the next step on.
+// Threads   Uses SpatialHashConfig::parallelFor of the broadphase. Without a parallelFor, or with a broadphase of
+//           another class, the world works like World.
+// Shapes    getAabb() of shapes runs on several threads at once, even for the same shape. Bullet's shapes allow this.
+// Callbacks All boxes are computed before the first box is set. If a callback of the pair cache changes an object,
+//           its box follows in the next step.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -32,14 +32,15 @@ namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
 /// The boxes of a world's objects, as btCollisionWorld::updateSingleAabb() computes them.
 class WorldAabbs {
 public:
-    /// As btCollisionWorld::updateAabbs(). Returns false, and does nothing, if it must not use several threads.
+    /// As btCollisionWorld::updateAabbs(). Returns false, and does nothing, without a parallelFor in a
+    /// SpatialHashBroadphase.
     [[nodiscard]] HASHPHASE_BULLET_EXPORT bool update(btCollisionWorld& world);
 
 private:
     void compute(btCollisionWorld& world, int number);
     void dropSkipped(btCollisionWorld& world);
 
-    std::vector<btBroadphaseProxy*> proxies_;  // of each object; null if its box is not set
+    std::vector<btBroadphaseProxy*> proxies_;  // one for each box that is set
     std::vector<btVector3> mins_;
     std::vector<btVector3> maxs_;
 };
@@ -48,9 +49,9 @@ private:
 
 inline namespace HASHPHASE_BULLET_NAMESPACE {
 
-/// A World (btCollisionWorld, btDiscreteDynamicsWorld, btDiscreteDynamicsWorldMt, btSoftRigidDynamicsWorld,
-/// btMultiBodyDynamicsWorld, or your own class over one of these) with its constructors and results. updateAabbs()
-/// passes all boxes to one SpatialHashBroadphase::setAabbs().
+/// A world with the constructors and results of World: btCollisionWorld, btDiscreteDynamicsWorld,
+/// btDiscreteDynamicsWorldMt, btSoftRigidDynamicsWorld, btMultiBodyDynamicsWorld, or your own class derived from one
+/// of these. updateAabbs() sets all boxes by one SpatialHashBroadphase::setAabbs().
 template <class World>
 class ParallelAabbs : public World {
     static_assert(std::is_base_of_v<btCollisionWorld, World>,
@@ -62,10 +63,10 @@ class ParallelAabbs : public World {
 public:
     using World::World;
 
-    /// Sets the box of each object, or with setForceUpdateAllAabbs(false) of each active one, as World does: with
-    /// Bullet's contact margin, and with m_useContinuous around the predicted way. An object with too large a box
-    /// leaves the simulation, with Bullet's warning. Cost: a box for each object, and setAabbs(); 40 bytes an
-    /// object (72 in double precision).
+    /// Sets the box of each object as World does; with setForceUpdateAllAabbs(false), only of active objects. Boxes
+    /// include Bullet's contact margin, and with m_useContinuous the predicted path. If a box is too large, Bullet
+    /// removes the object from the simulation, and prints a warning. Cost: a box for each object, and setAabbs().
+    /// Memory: 40 bytes for each object (72 in double precision).
     void updateAabbs() override {
         if (!aabbs_.update(*this)) {
             World::updateAabbs();

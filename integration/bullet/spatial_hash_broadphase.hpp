@@ -5,24 +5,25 @@
 //
 //     hashphase::SpatialHashBroadphase broadphase;  // instead of btDbvtBroadphase
 //
-// Pairs are exact. Only calculateOverlappingPairs() makes and removes them. Exception: a ghost gets its pairs at once
-// when it is created or moved, and when another object is created at its place or jumps there.
+// Pairs are exact. createProxy() and setAabb() leave pairs to calculateOverlappingPairs(). Exceptions: eagerGroups,
+// and ghosts. A ghost gets its pairs at once when it is created or moved, and when another object is created in its
+// box or jumps into it.
 //
-// Threads   Rays and aabbTest(): any number at the same time, also nested. Everything else needs the broadphase for
-//           itself, as in Bullet.
-// Units     the world's, of any size
-// Clients   btCollisionObjects or NULL. Other types need eagerGhosts off, and no sweeps, closestRay() or
-//           collisionChecksChanged().
-// Bad data  A box with a NaN makes no pair and is reported once (diagnostics.hpp). Infinite, huge and inverted
-//           boxes are compared exactly by their coordinates. A NULL dispatcher is fine.
-// Callbacks of rayTest(), aabbTest(), closestRay(), the pair cache and the dispatcher may query, and create, move
-//           and destroy proxies. A destroyed proxy is not reported any more; a moved or created one may be
-//           reported, once more, or not. Do not remove an object that Bullet is working on. The overlap filter may
-//           only query. No callback may call calculateOverlappingPairs(), shiftOrigin(), resetPool() or
-//           releaseUnusedMemory(). Asserted.
-// Memory    Throws std::bad_alloc when memory runs out; repeat the call. A failed createProxy() has created
-//           nothing, a failed shiftOrigin() has shifted nothing, a failed setAabb() has moved the proxy. The next
-//           calculateOverlappingPairs() that returns completes the cache and ghosts' pairs.
+// Threads   Ray queries and aabbTest() may run on any number of threads at the same time, also nested. During any
+//           other call, no other thread may use the broadphase, as in Bullet.
+// Units     those of the world, whatever they are
+// Clients   btCollisionObjects or NULL. With other types, set eagerGhosts to false, and do not use sweeps,
+//           closestRay() or collisionChecksChanged().
+// Bad data  A box with a NaN makes no pair; the first such box is reported (diagnostics.hpp). Infinite, huge and
+//           inverted boxes are compared exactly by their coordinates. The dispatcher may be NULL.
+// Callbacks Callbacks of rayTest(), aabbTest(), closestRay(), the pair cache and the dispatcher may query, and
+//           create, move and destroy proxies. A query does not report destroyed proxies. It may report or skip a
+//           created or moved proxy, and may report a moved proxy twice. Do not remove an object that Bullet is
+//           working on. The overlap filter may only query. No callback may call calculateOverlappingPairs(),
+//           shiftOrigin(), resetPool() or releaseUnusedMemory(). The last two rules are asserted.
+// Memory    Throws std::bad_alloc when memory runs out; repeat the call. A failed createProxy() has created nothing.
+//           A failed shiftOrigin() has shifted nothing. A failed setAabb() has moved the proxy. The next
+//           calculateOverlappingPairs() that returns completes the pairs of the cache and of ghosts.
 // Misuse    Asserted: proxies are alive and of this broadphase, spans of a batch have equal lengths, rays have
 //           callbacks.
 
@@ -61,8 +62,8 @@ public:
     /// Makes and owns a PairCache. Throws std::invalid_argument with configError(config).
     explicit SpatialHashBroadphase(const SpatialHashConfig& config = {});
 
-    /// Uses `pairCache`, which must outlive the broadphase; with nullptr, as above. A PairCache is changed in
-    /// batches, any other cache pair by pair. Asserted: the cache has no pairs yet.
+    /// Uses `pairCache`, which must outlive the broadphase; with nullptr, makes its own as above. Changes a PairCache
+    /// in batches, and any other cache pair by pair. Asserted: the cache has no pairs yet.
     explicit SpatialHashBroadphase(PairCache* pairCache, const SpatialHashConfig& config = {});
     explicit SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                    const SpatialHashConfig& config = {});
@@ -74,34 +75,34 @@ public:
 
     // --- btBroadphaseInterface -------------------------------------------------------------------
 
-    /// Returns a proxy with a fixed address. m_uniqueId counts 1, 2, 3 ...; a number is reused only after
-    /// resetPool(), or when a WorldSnapshot goes back. Ignores `shapeType`. Throws std::length_error beyond 2^28
-    /// proxies, and after 2^31 - 1 unique ids until resetPool(). Cost: O(1), and a look at up to 1,024 ghosts, or a
-    /// box query if there are more. For ghosts and SpatialHashConfig::eagerGroups also Pairs::findPairsNow() and
-    /// the pairs.
+    /// Returns a proxy whose address never changes. m_uniqueId counts 1, 2, 3 ...; unique ids are reused only after
+    /// resetPool() or WorldSnapshot::restore(). Ignores `shapeType`. Throws std::length_error beyond 2^28 proxies,
+    /// and after 2^31 - 1 unique ids until resetPool(). Cost: O(1), and one test for each ghost, or one box query for
+    /// more than 1,024 ghosts. For a ghost, or with SpatialHashConfig::eagerGroups, also Pairs::findPairsNow() and
+    /// O(1) for each new pair.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
 
-    /// Removes the proxy's pairs through the pair cache, then the proxy. Cost: as the cache; with PairCache the
-    /// proxy's pairs.
+    /// Removes the proxy's pairs through the pair cache, then the proxy. Cost: as the cache; with a PairCache,
+    /// O(proxy's pairs).
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// Sets the proxy's box. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), also notices
-    /// that they have changed, even if the box has not. Cost: O(1), or a comparison for an unchanged box; with
-    /// SpatialHashConfig::sweep a look at the body. For ghosts, eagerGroups, and a box that does not touch the last
-    /// one: as createProxy().
+    /// Sets the proxy's box. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), also reads the
+    /// proxy's group and mask, even if the box is unchanged. Cost: O(1); one comparison for an unchanged box; with
+    /// SpatialHashConfig::sweep, also the box of the body's shape. For ghosts, eagerGroups, and a box that does not
+    /// touch the previous box: as createProxy().
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
-    /// Returns the box last set, without its margin, also for a sweeping proxy.
+    /// Returns the box as last set, without margin; a sweep does not change it.
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box (aabbMin, aabbMax), passes
     /// btRayAabb2() with the callback's own fields. Sees every box as last set. Order: roughly from near to far; do
-    /// not rely on it. A ray with NaN or infinite ends, or without length, finds nothing. For a ray too long to be
-    /// squared, Bullet's fields are NaN or zero, as under btDbvtBroadphase: use grid() with a RayRegion. Cost: the
-    /// boxes near the ray; at most one test for each proxy.
+    /// not rely on it. A ray with NaN or infinite ends, or of length 0, finds nothing. If the square of a ray's
+    /// length overflows, Bullet's fields are NaN or zero, as under btDbvtBroadphase. For such rays, query grid() with
+    /// a RayRegion. Cost: the boxes near the ray; at most one test for each proxy.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
@@ -118,15 +119,15 @@ public:
     void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                   btBroadphaseAabbCallback& callback) const;
 
-    /// Makes the cache's pairs exact: it then holds precisely the pairs of overlapping proxies that its filter
-    /// accepts, and with SpatialHashConfig::sweep those that meet on their ways. Persisting pairs are not touched.
-    /// Order: parted pairs go first, then new pairs come, each in the order of their proxies. Changes and order
-    /// depend on the boxes before and now, not on the calls between. Last, pairs that the program took out of the
-    /// cache return, unless the filter refuses them now. In a cache not given as a PairCache, they stay out until
-    /// the two meet again.
-    /// Groups and masks may be written at any time. A new pair then begins after a move or setAabb() of one of the
-    /// two; a present pair lasts until its boxes part.
-    /// Cost: as Pairs::update(), and the cache for each pair that comes or goes. Enters BT_PROFILE zones.
+    /// Updates the cache's pairs. Afterwards, the cache holds exactly the pairs of overlapping proxies that its
+    /// filter accepts. With SpatialHashConfig::sweep, also pairs of proxies that meet on their paths. Pairs that
+    /// persist are not touched. Order: first removes the separated pairs, then adds the new pairs, both sorted by
+    /// their proxies. Changes and order depend on the boxes before and now, not on the calls between. Finally adds
+    /// the pairs that the program removed from the cache, unless the filter now refuses them. A cache not given as a
+    /// PairCache gets such pairs back only when the proxies meet again.
+    /// You may write groups and masks at any time. A newly allowed pair begins after a move or setAabb() of one of
+    /// its proxies. A present pair lasts until its boxes separate.
+    /// Cost: as Pairs::update(), and the cache for each added or removed pair. Enters BT_PROFILE zones.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -134,12 +135,13 @@ public:
         return pairCache_;
     }
 
-    /// Returns the box around all boxes with margins; zero if there are none. Cost: O(proxies).
+    /// Returns the box around all boxes with margins; zero without proxies. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
-    /// If no proxy is alive, makes the broadphase as new: m_uniqueId counts from 1, and the next calls give pairs,
-    /// orders and frees of algorithms as at first. Frees memory, as Grid::clear(). Does nothing while a proxy is
-    /// alive. Reset Bullet's own memory by the solver's reset(). Asserted: not within callbacks.
+    /// If no proxy is alive, resets the broadphase. Afterwards, equal calls give the results of a new broadphase,
+    /// also m_uniqueId (from 1), the order of pairs, and the order of freed algorithms. Frees memory, as
+    /// Grid::clear(). Does nothing while a proxy is alive. To reset Bullet's own state, call the solver's reset().
+    /// Asserted: not within callbacks.
     void resetPool(btDispatcher* dispatcher) override;
 
     /// Does nothing, as in Bullet; see lastCost() and memoryBytes().
@@ -147,130 +149,134 @@ public:
 
     // --- Many at once ----------------------------------------------------------------------------
 
-    /// Creates a proxy for each definition, in order, into `proxies`. If memory runs out, only the proxies written
-    /// so far are created. Cost: as createProxy() for each.
+    /// Creates a proxy for each definition, in order, and writes it to `proxies`. If memory runs out, only the
+    /// proxies written so far are created. Cost: as createProxy() for each.
     void createProxies(std::span<const ProxyDefinition> definitions,
                        std::span<btBroadphaseProxy*> proxies, btDispatcher* dispatcher);
 
-    /// Sets the box of each proxy, in order, with the result of single calls. Uses the threads of
-    /// SpatialHashConfig::parallelFor, unless boxes sweep, a proxy is named twice, or a callback has changed pairs.
-    /// If memory runs out, some boxes are set: repeat the call. Cost: as setAabb() for each.
+    /// Sets the box of each proxy, in order. The result equals single calls. Runs on the threads of
+    /// SpatialHashConfig::parallelFor, but on the caller's thread with sweeps, with duplicates in `proxies`, and
+    /// after a callback has changed pairs. If memory runs out, some boxes are set: repeat the call. Cost: as
+    /// setAabb() for each.
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
 
-    /// Removes the pairs of all the proxies through the pair cache, then the proxies. Pairs go in the order of
-    /// proxies; for a PairCache see PairCache::removeOverlappingPairsContainingProxies(). Asserted: each proxy is
-    /// named once. Cost: as the cache; with a PairCache at most one pass over all pairs.
+    /// Removes the pairs of all these proxies through the pair cache, proxy by proxy, and then the proxies. For the
+    /// order in a PairCache see PairCache::removeOverlappingPairsContainingProxies(). Asserted: `proxies` has no
+    /// duplicates. Cost: as the cache; with a PairCache at most one pass over all pairs.
     void destroyProxies(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
 
     // --- Beyond Bullet ---------------------------------------------------------------------------
 
-    /// As btCollisionWorld::rayTest(), but goes from near to far, and only as far as a nearer hit is possible.
+    /// As btCollisionWorld::rayTest(), but tests objects from near to far, and stops when no nearer hit is possible.
     /// Reports no hit more than 2 cm behind callback.m_closestHitFraction. A ClosestRayResultCallback gets an equal
-    /// result, but may keep another of several hits at one fraction. Soft bodies need rayTest() of their world.
-    /// Returns the cost. Cost: at most rayTest(), and a cast at the shape of each found proxy.
+    /// result, but may keep another of several hits at an equal fraction. For soft bodies, use rayTest() of their
+    /// world. Returns the cost. Cost: at most rayTest(), and a cast at the shape of each found proxy.
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 
-    /// rayTest() and closestRay() for many rays, each with its own callback. Hits about equally near may come in
-    /// another order than by single calls. If `parallelFor` is parallel, callbacks run at the same time and must
-    /// change nothing. Cost: as the single rays, or less.
+    /// rayTest() and closestRay() for many rays, each with its own callback. Hits at nearly equal distance may come
+    /// in another order than by single calls. With a parallel `parallelFor`, callbacks run at the same time, and must
+    /// not change the broadphase or shared data. Cost: as the single rays, or less.
     void rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor = serialFor);
     void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 
-    /// Asks the filter again about every proxy that this one overlaps, or met on its way; adds and removes pairs at
-    /// once. Call it after a change of its group or mask, or of the filter. Persisting pairs keep their contacts:
-    /// for changes of shape see shapeChanged(). Cost: as Pairs::refilter(), and the proxy's pairs.
+    /// Asks the filter again about every proxy that `proxy` overlaps, or met on its path in the last calculation.
+    /// Adds and removes pairs at once. Call it after a change of the proxy's group or mask, or of the filter.
+    /// Persisting pairs keep their contacts; after a change of shape, call shapeChanged(). Cost: as
+    /// Pairs::refilter(), and the proxy's pairs.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
-    /// For many proxies, in one pass: asks the filter once about each two. Cost: as Pairs::refilter() for many, and
-    /// their pairs.
+    /// As above for many proxies, but asks the filter only once about every pair. Cost: as Pairs::refilter() for
+    /// many, and the proxies' pairs.
     void refilter(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
 
-    /// refilter() for all proxies, after a change of the filter callback or its data. Cost: as
-    /// Pairs::refilterAll(), and the pairs that come and go.
+    /// refilter() for all proxies, after a change of the filter callback or its data. Cost: as Pairs::refilterAll(),
+    /// and the cache for each added or removed pair.
     void refilterAll(btDispatcher* dispatcher);
 
-    /// Grows the proxy's box by `margin` [m] on all sides, also on its way if it sweeps. Two proxies are a pair if
-    /// their boxes overlap, each grown by its own margin. Queries find the proxy by the grown box; getAabb(),
-    /// m_aabbMin and m_aabbMax keep the set box. Takes effect at once, as setAabb() with the present box. A new
-    /// proxy has no margin, also after refreshBroadphaseProxy(). To Bullet, a pair within margins is a pair: two
-    /// dynamic bodies sleep only together, and have a narrow phase while awake. Asserted: `margin` is finite, and 0
-    /// or more; otherwise nothing changes. Cost: as setAabb().
+    /// Grows the proxy's box by `margin` [m] on all sides, also along the path of a sweep. Two proxies are a pair if
+    /// their grown boxes overlap. Queries find the proxy by the grown box; getAabb(), m_aabbMin and m_aabbMax keep
+    /// the set box. Takes effect at once, as setAabb() with the present box. A new proxy has no margin;
+    /// refreshBroadphaseProxy() makes a new proxy. Bullet treats a pair within margins like any other: two dynamic
+    /// bodies fall asleep only together, and have a narrow phase while awake. Asserted: `margin` is finite and not
+    /// negative; otherwise nothing changes. Cost: as setAabb().
     void setMargin(btBroadphaseProxy* proxy, btScalar margin, btDispatcher* dispatcher);
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
 
-    /// From now on the two are no pair, whatever groups, masks and the filter say: see Pairs::ignore(). A present
-    /// pair and its contacts end at once; with PairOrder::canonical, the algorithm ends when the cache is read
-    /// next. Lasts until stopIgnoringPair(), or until one proxy is destroyed, also by refreshBroadphaseProxy().
-    /// Asserted: the two differ. Cost: O(1), and the cache; one with deferred removal: a pass over its pairs.
+    /// From now on, the two proxies do not pair, whatever groups, masks and the filter decide (see Pairs::ignore()).
+    /// An existing pair is removed at once. Its algorithm and contacts are freed at once, or with
+    /// PairOrder::canonical when the cache is next read. Lasts until stopIgnoringPair(), or until one proxy is
+    /// destroyed, also by refreshBroadphaseProxy(). Asserted: the proxies differ. Cost: O(1), and the cache; with
+    /// deferred removal, a pass over its pairs.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
-    /// If the two overlap and the filter accepts them, they are a pair at once. Cost: as ignorePair().
+    /// If the proxies overlap and the filter accepts them, adds their pair at once. Cost: as ignorePair().
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     [[nodiscard]] bool isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const;
 
-    /// Makes the ignored pairs of this proxy those that Bullet's dispatcher refuses: with objects in the world that
-    /// its client lists by setIgnoreCollisionCheck(). Its other ignored pairs end, also from ignorePair(), unless
-    /// the other object lists this one. Call it for the object with the list: when the list has changed (also by
-    /// removeConstraint(), or addConstraint() with disableCollisionsBetweenLinkedBodies), and when it or a listed
-    /// object was added. A list may name objects that are gone. Cost: a pass over all proxies and ignored pairs.
+    /// Updates the ignored pairs of this proxy to the pairs that Bullet's dispatcher refuses. Ignores its pairs with
+    /// objects in the world that its client lists by setIgnoreCollisionCheck(). Stops ignoring its other pairs, also
+    /// pairs of ignorePair(). Exception: pairs whose other object lists this proxy's client. Call it for the object
+    /// with the list: when the list has changed (also by removeConstraint(), or addConstraint() with
+    /// disableCollisionsBetweenLinkedBodies), and when this object or a listed object was added to the world. A list
+    /// may contain destroyed objects. Cost: a pass over all proxies and ignored pairs.
     void collisionChecksChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
-    /// For many proxies, in one pass.
+    /// As above for many proxies, in one pass.
     void collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,
                                 btDispatcher* dispatcher);
 
-    /// Frees the algorithms and contacts of the proxy's pairs, also in ghosts; the pairs stay. Call it after a
-    /// change of shape, scale, margin or other contact data, with btCollisionWorld::updateSingleAabb(), before the
-    /// next step. Calls the ghost callback for the end and the beginning of each pair (twice for an end that it
-    /// causes itself), unless the cache has deferred removal. Cost: as PairCache::renewPairsContainingProxy(), or a
-    /// pass over pairs.
+    /// Frees the algorithms and contacts of the proxy's pairs, also in ghosts; the pairs stay. After a change of
+    /// shape, scale, collision margin or other contact data, call it and btCollisionWorld::updateSingleAabb() before
+    /// the next step. Calls the ghost callback as if each pair was removed and added again, except with deferred
+    /// removal. If the callback itself removes the pair, it is called again for this removal. Cost: as
+    /// PairCache::renewPairsContainingProxy(); with another cache, a pass over all pairs.
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
-    /// Subtracts `shift` from every box: see Grid::shiftOrigin(). Pairs stay; if rounding brings boxes together,
-    /// the next calculateOverlappingPairs() makes them pairs. To move the objects as well, call shiftWorldOrigin()
-    /// (origin_shift.hpp). Returns how many boxes were rounded. Cost: a pass over the proxies, and
-    /// Grid::shiftOrigin().
+    /// Subtracts `shift` from every box: see Grid::shiftOrigin(). Pairs stay. If rounding makes boxes overlap, the
+    /// next calculateOverlappingPairs() adds their pairs. To shift the objects too, call shiftWorldOrigin()
+    /// (origin_shift.hpp). Returns how many boxes were rounded. Cost: O(proxies), and Grid::shiftOrigin().
     std::size_t shiftOrigin(const btVector3& shift);
 
-    /// The grid, for queries that Bullet does not have. proxyOf() returns the proxy of an id, whose m_clientObject
-    /// is the btCollisionObject; for an index: proxyOf(grid().idAt(index)). idOf() takes proxies of this class.
-    /// Asserted: the proxy is alive.
+    /// The grid, for queries that Bullet does not have. proxyOf(id) returns the proxy with this id; its
+    /// m_clientObject is the btCollisionObject. For an index, call proxyOf(grid().idAt(index)). idOf() takes only
+    /// proxies of this class. Asserted: the proxy is alive.
     [[nodiscard]] const Grid<btScalar>& grid() const noexcept { return grid_; }
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
     [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);
 
-    /// Returns which proxies sweep, and how far; nullptr unless SpatialHashConfig::sweep is set. The grid has the
-    /// box around the way; Sweeps::visit() searches the way, and Sweeps::motion() returns it.
+    /// With SpatialHashConfig::sweep, returns which proxies sweep, and how far; otherwise nullptr. The grid has the
+    /// box around the whole path. Sweeps::visit() searches along the path, and Sweeps::motion() returns it.
     [[nodiscard]] const Sweeps<btScalar>* sweeps() const noexcept { return sweeps_.get(); }
 
     [[nodiscard]] const SpatialHashConfig& config() const noexcept { return config_; }
 
     [[nodiscard]] const PairCost& lastCost() const noexcept { return pairs_.lastCost(); }
 
-    /// Returns the bytes held, with Bullet's proxies, and with the pair cache if the broadphase made it.
+    /// Returns the bytes held, including the proxies, and the pair cache if the broadphase made it.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Gives back unused memory: of the grid, pairs and sweeps (see Grid::releaseUnusedMemory()), of a PairCache,
-    /// and of the last destroyed proxies. Do not use their addresses any more; assertions do not catch this.
-    /// calculateOverlappingPairs() does it by itself after 256 calls in a row with room for more than eight times
-    /// the proxies or pairs. Asserted: not within a callback. Cost: O(grid().indexLimit()), and moving the rest.
+    /// Frees unused memory of the grid, pairs and sweeps (see Grid::releaseUnusedMemory()), of a PairCache, and of
+    /// destroyed proxies with the highest indices. Do not use pointers to destroyed proxies afterwards: assertions
+    /// cannot detect this. calculateOverlappingPairs() frees memory by itself after 256 calls in a row with capacity
+    /// for more than eight times the proxies or pairs. Asserted: not within a callback. Cost: O(grid().indexLimit()),
+    /// and moving the rest.
     void releaseUnusedMemory() noexcept;
 
-    /// Returns the broken invariant of grid, sweeps, pairs or its own PairCache in a sentence; empty if all hold.
+    /// Returns a sentence about the broken invariant of the grid, sweeps, pairs or own PairCache; empty if all hold.
     /// Also:
-    /// - The cache holds as many pairs as the set of pairs (its own cache, if the program took out none since).
+    /// - The own cache holds as many pairs as the set of pairs, if the program has not removed any since.
     [[nodiscard]] std::string validate() const;
 
 private:
-    /// The known kind of a client.
+    /// What is known about a client.
     enum class Client : std::uint8_t { unknown, ghost, other };
 
     struct Proxy : btBroadphaseProxy {
         ProxyId id;
         Client client = Client::unknown;
-        std::uint8_t kind = 0;    // of its groups, as the grid knows them, in groupKinds_
-        std::uint16_t world = 0;  // of a WorldsBroadphase
-        btScalar margin = 0;      // by which the grid's box is larger on each side [m]
+        std::uint8_t kind = 0;    // index in groupKinds_ of the groups that the grid has
+        std::uint16_t world = 0;  // index of its world in a WorldsBroadphase
+        btScalar margin = 0;      // the grid's box is larger by this on each side [m]
     };
     struct PairLists;
     class Applying;
@@ -278,7 +284,7 @@ private:
     template <class Callback>
     struct ProcessCollector;
 
-    // One of many worlds: spatial_hash_world.cpp.
+    // For a WorldsBroadphase, which has many: spatial_hash_world.cpp.
     SpatialHashBroadphase(const SpatialHashConfig& config, PairCache& sharedCache,
                           int& sharedUniqueId, std::uint16_t worldNumber);
     [[nodiscard]] bool isUpToDate() const noexcept;
@@ -298,7 +304,7 @@ private:
     [[nodiscard]] bool endsAabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                                     btBroadphaseAabbCallback& callback) const;
 
-    // Not const, as Bullet takes no const proxies.
+    // Returns a non-const proxy, because Bullet takes no const proxies.
     [[nodiscard]] Proxy* proxyAt(std::uint32_t slot) const { return proxies_.at(slot); }
     void askFilter(std::span<const ProxyPair> asked, std::span<char> accepted) const;
     [[nodiscard]] auto cacheFilter() const {
@@ -333,10 +339,10 @@ private:
     void renewPairsOfOtherCache(btBroadphaseProxy& proxy, btDispatcher* dispatcher);
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
     void endProxy(Proxy& proxy, int uniqueId, std::uint64_t changeCount, btDispatcher* dispatcher);
-    // To see which proxies callbacks have destroyed.
+    // Copies the ids, to see which proxies callbacks destroy.
     static void noteIds(std::span<btBroadphaseProxy* const> proxies, std::vector<int>& ids);
     static void checkNamedOnce(std::span<const int> ids);
-    // Whether it, or another world of its WorldsBroadphase, calculates on this thread.
+    // Whether this broadphase, or another world of its WorldsBroadphase, is calculating on this thread.
     [[nodiscard]] bool isCalculating() const noexcept {
         return detail::QueryScope::isWithin(idCounter_);
     }
@@ -366,10 +372,10 @@ private:
     [[nodiscard]] std::vector<ProxyId> ghostsAt(const Proxy& proxy) const;
     void findPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
     void findGhostPairsNow(const Proxy& proxy, btDispatcher* dispatcher);
-    // setAabb() with all its effects, and setMargin().
+    // The general case of setAabb(), and setMargin().
     void setAnyAabb(Proxy& proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                     btScalar margin, btDispatcher* dispatcher);
-    // Whether a move finds no pairs at once: detail/lone_moves.inl.
+    // Whether setting this box finds no pairs at once: detail/lone_moves.inl.
     [[nodiscard]] bool movesAlone(const Proxy& proxy, const btVector3& aabbMin,
                                   const btVector3& aabbMax, const btDispatcher* dispatcher) const;
     [[nodiscard]] static Aabb<btScalar> grown(const Aabb<btScalar>& box, btScalar margin);
@@ -382,7 +388,7 @@ private:
     [[nodiscard]] bool isAccepted(const btBroadphasePair& pair) const {
         return pairCache_->needsBroadphaseCollision(pair.m_pProxy0, pair.m_pProxy1);
     }
-    // Before any change, as an assertion handler may throw.
+    // Call it before any change, because an assertion handler may throw.
     void checkMayChange() const {
         HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(&grid_), detail::kMustNotChange);
     }
@@ -399,31 +405,31 @@ private:
     friend struct detail::CacheWatch;
     SpatialHashConfig config_;
     Grid<btScalar> grid_;
-    std::unique_ptr<Sweeps<btScalar>> sweeps_;  // if configured
+    std::unique_ptr<Sweeps<btScalar>> sweeps_;  // null without sweeps
     Pairs<btScalar> pairs_;
 
     detail::StableArray<Proxy> proxies_;  // by ProxyId::index
-    std::vector<int> uniqueIds_;          // by ProxyId::index; 0 if no proxy is alive
-    int* idCounter_ = &lastUniqueId_;     // or the counter of all worlds
+    std::vector<int> uniqueIds_;          // by ProxyId::index; 0 without a live proxy
+    int* idCounter_ = &lastUniqueId_;     // or the counter that all worlds share
     int lastUniqueId_ = 0;
-    detail::PeakWatch peaks_;  // of the cache
+    detail::PeakWatch peaks_;  // capacity of the cache over time
     std::uint16_t worldNumber_ = 0;
-    bool groupsDecide_ = false;            // which proxies may pair, not a callback
-    bool mustNoteGroups_ = false;          // of all
-    bool isCacheBehind_ = false;           // some changes did not reach it
-    bool isApplying_ = false;              // changes to the cache
-    bool mayGrow_ = sweeps_ != nullptr;    // some boxes, which sweep or have a margin
-    std::unique_ptr<PairCache> ownCache_;  // if none was given
-    detail::CacheWatch watch_{*this};      // of the cache, if it is known to be a PairCache
+    bool groupsDecide_ = false;            // groups and masks decide, not a callback
+    bool mustNoteGroups_ = false;          // must read the groups of all proxies
+    bool isCacheBehind_ = false;           // some changes did not reach the cache
+    bool isApplying_ = false;              // is changing the cache
+    bool mayGrow_ = sweeps_ != nullptr;    // some boxes may sweep or have a margin
+    std::unique_ptr<PairCache> ownCache_;  // null if a cache was given
+    detail::CacheWatch watch_{*this};      // watches a cache that is known as a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
     detail::GroupKinds groupKinds_;
-    detail::GroupKinds::Set changedKinds_ = 0;  // of proxies changed since the last update
-    std::vector<std::uint64_t> seen_;           // slots whose groups are known since then; or empty
+    detail::GroupKinds::Set changedKinds_ = 0;  // kinds of proxies changed since the last update
+    std::vector<std::uint64_t> seen_;           // bits by index: groups read since the update
     std::size_t seenCount_ = 0;
-    std::unique_ptr<detail::FlatSet> ghosts_;  // their slots; made with the first
+    std::unique_ptr<detail::FlatSet> ghosts_;  // indices of ghosts; null before the first ghost
     std::vector<BulletProxyPair> died_;        // scratch of PairLists
     std::vector<BulletProxyPair> born_;
-    std::uint64_t cacheChangeCount_ = 0;  // calls that changed it, and called back
+    std::uint64_t cacheChangeCount_ = 0;  // changes of the cache by this broadphase
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -25,46 +25,46 @@ struct SpatialHashConfig {
     GridConfig grid{};
 
     /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character controller
-    /// expects, if the pair cache has an internal ghost pair callback. (A cache not given as a PairCache counts as
-    /// having one.) An object that is created at a ghost's place, or jumps there out of its last box, also pairs
-    /// with the ghost at once. Calls with a dispatcher, such as a btCollisionWorld's, take every client that may
-    /// have pairs for a btCollisionObject. Set false if clients are other objects.
+    /// expects. This needs a pair cache with an internal ghost pair callback. (A cache not given as a PairCache
+    /// counts as having one.) An object that is created in a ghost's box, or jumps into it from outside, also pairs
+    /// with the ghost at once. Calls with a dispatcher, such as by a btCollisionWorld, treat every client that may
+    /// have pairs as a btCollisionObject. Set false if clients are of other types.
     bool eagerGhosts = true;
 
-    /// Proxies of these groups get their pairs at once, too. For code that is no ghost object and reads pairs
-    /// between moves and steps. None by default: the program defines what a bit means.
+    /// Proxies of these groups get their pairs at once, too. For code without ghost objects that reads pairs between
+    /// a move and the next step. None by default, because your program defines what a bit means.
     int eagerGroups = 0;
 
-    /// A ParallelFor for setAabbs() and calculateOverlappingPairs(); empty for the caller's thread. Results are
-    /// equal on any number of threads. See bullet_parallel_for.hpp and tbb_parallel_for.hpp.
+    /// A ParallelFor for setAabbs() and calculateOverlappingPairs(). If empty, they run on the caller's thread.
+    /// Results are equal on any number of threads. See bullet_parallel_for.hpp and tbb_parallel_for.hpp.
     std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor{};
 
-    /// How to find the objects that a fast rigid body passes in a step; by default not at all. With
-    /// m_useContinuous, Bullet's box of such a body covers start, end and all between. With a sweep, this box makes
-    /// no pairs: the body sweeps along the way that Bullet predicts, and pairs exactly with the objects that it
-    /// touches during the step. Queries find it by Bullet's box, extended to the end if m_useContinuous is off. A
-    /// body sweeps until its next setAabb(): after you move it by hand, set its interpolation transform too. Cost:
-    /// a look at the shape of each moving body.
+    /// How to find the objects that a fast rigid body passes in a step; by default not at all. With m_useContinuous,
+    /// Bullet's box of such a body covers start, end and all between. With a sweep, this box makes no pairs. Instead,
+    /// the body pairs exactly with the objects that it touches along the path that Bullet predicts. Queries find the
+    /// body by Bullet's box, extended to the end of the path if m_useContinuous is off. A body sweeps until its next
+    /// setAabb(). After you move a body by hand, set its interpolation transform too. Cost: up to two boxes of each
+    /// moving body's shape.
     Sweep sweep = Sweep::none;
 
-    /// A body is fast if it moves in a step by more than this share of the smallest edge of its box. Other bodies
+    /// A body is fast if it moves in a step by more than `fastFrom` times the smallest edge of its box. Other bodies
     /// keep Bullet's box. Valid: 0 or more.
     btScalar fastFrom = 1;
 
-    /// Set this if an overlap filter callback, or a pair cache other than PairCache, refuses all pairs that groups
-    /// and masks refuse, as Bullet's own caches do. Then it is asked only about other pairs, and proxies that are
-    /// filtered out, for example parked with a mask of 0, cost nothing. Otherwise it decides instead of groups and
-    /// masks: it is asked about each two overlapping proxies, and again about a refused pair when either proxy has
-    /// changed.
+    /// Set this to true if your overlap filter callback, or your pair cache other than PairCache, refuses at least
+    /// the pairs that groups and masks refuse. Bullet's own caches do so. In that case, the callback or cache is
+    /// asked only about other pairs. Proxies that groups and masks filter out, for example with a mask of 0, cost
+    /// nothing. If false, the callback or cache decides instead of groups and masks. It is asked about every pair of
+    /// overlapping proxies, and again about a refused pair when either proxy has changed.
     bool filterRefusesMore = false;
 
     /// Ends a query when process() of its callback returns false. Off by default: Bullet's broadphases ignore the
-    /// result, and programs return false for other reasons.
+    /// return value, and programs return false for other reasons.
     bool stopWhenProcessReturnsFalse = false;
 };
 
-/// Returns what is wrong with fastFrom or the grid's settings, in a sentence, as configError(const GridConfig&);
-/// empty if nothing is.
+/// Returns a sentence about an invalid fastFrom or grid setting, as configError(const GridConfig&); empty if all
+/// settings are valid.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string configError(const SpatialHashConfig& config);
 
 /// A proxy for createProxies(): the arguments of createProxy().

@@ -20,15 +20,16 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Appends the triangles of a shape at `transform` to `corners`: three corners each, in world coordinates [m]. They
-/// come in Bullet's order, which is not the mesh's. Corners that triangles share stay equal to the bit.
+/// Appends the triangles of a shape at `transform` to `corners`: three corners for each triangle, in world
+/// coordinates [m]. Triangles come in Bullet's order, not in the mesh's. A shared corner has equal bits in all its
+/// triangles.
 ///
-/// Shapes: btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btHeightfieldTerrainShape, any other
-/// btConcaveShape that lists its triangles, and compounds of these.
-/// Returns an empty string, or a sentence about the fault; then nothing is appended. Faults: a shape or child
-/// without triangles (a plane, a convex shape, a heightfield with a negative scaling), and compounds more than 64
-/// deep within each other, or within themselves.
-/// Cost: O(triangles), and the children of compounds, each as often as it is contained.
+/// Shapes: btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btHeightfieldTerrainShape, any other btConcaveShape
+/// that lists its triangles, and compounds of these shapes.
+/// Returns an empty string, or a sentence about the fault. After a fault, nothing is appended. Faults: a shape or
+/// child without triangles (a plane, a convex shape, a heightfield with a negative scaling), compounds nested more
+/// than 64 deep, or a compound that contains itself.
+/// Cost: O(triangles), and the children of compounds. Shapes that occur several times count each time.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string appendTriangles(
     const btCollisionShape& shape, const btTransform& transform,
     std::vector<Vector3<btScalar>>& corners);

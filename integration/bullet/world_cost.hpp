@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Counts what the last step of a Bullet world had to do.
+// Counts the work in the last step of a Bullet world.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -10,24 +10,24 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Counts of one step. A count is exactly 0 while the effect before its colon is not declared (world_effects.hpp),
-/// unless the program changes by hand what a WorldConfigurator has set.
+/// Counts of one step. The word before a colon is an effect (world_effects.hpp). Without this effect the count is
+/// exactly 0, unless the program changes settings of a WorldConfigurator by hand.
 struct WorldCost {
-    int pairCount = 0;             ///< pairs: boxes that overlap
+    int pairCount = 0;             ///< pairs: pairs of overlapping boxes
     int manifoldCount = 0;         ///< pairs: contact manifolds of the narrow phase
     int contactCount = 0;          ///< pairs: contact points
-    int answeredContactCount = 0;  ///< response: contact points that the solver handles
-    int rubbingContactCount = 0;   ///< friction: such contact points with friction
+    int answeredContactCount = 0;  ///< response: contact points handled by the solver
+    int rubbingContactCount = 0;   ///< friction: handled contact points with friction
     int sweptCount = 0;            ///< sweep: bodies that Bullet swept
     int sleepingCount = 0;         ///< sleeping: dynamic bodies asleep
     int turningCount = 0;          ///< rotation: dynamic bodies with an angular velocity
-    int awakeCount = 0;            ///< dynamic bodies that were not asleep
+    int awakeCount = 0;            ///< dynamic bodies, neither asleep nor disabled
 };
 
-/// Returns the counts of the last step: call it between two steps. Cost: a look at each object and each contact.
+/// Returns the counts of the last step. Call it between two steps. Cost: one pass over all objects and contacts.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT WorldCost costOf(btDiscreteDynamicsWorld& world);
 
-/// Returns whether Bullet, with m_useContinuous set, sweeps the body when it moves by `way` [m] in a step.
+/// Returns whether Bullet sweeps the body if the body moves by `way` [m] in a step and m_useContinuous is set.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool isSwept(const btRigidBody& body, btScalar way);
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

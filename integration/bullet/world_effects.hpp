@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Lets Bullet compute only what a scene needs. By default every effect is declared, and nothing changes.
+// Makes Bullet compute only the effects that a scene needs. By default every effect is declared, and nothing changes.
 //
 //     WorldConfigurator configurator(world);
 //     configurator.apply({.rotation = false, .friction = false});
@@ -9,36 +9,39 @@
 // Effect        Without it                                   Consequences
 // restingBoxes  setForceUpdateAllAabbs(false)                call updateSingleAabb() after moving a static or
 //                                                            sleeping body by hand
-// pairs         an overlap filter that refuses every pair    no contacts, ghost lists, response or sweep; rays and
-//                                                            sweeps by hand still work
-// response      CF_NO_CONTACT_RESPONSE on every object       bodies fall through each other; contacts are reported
-// sweep         m_useContinuous, all CCD thresholds off      bodies that move by more than half their width in a
-//                                                            step may pass thin ones
-// sleeping      DISABLE_DEACTIVATION on dynamic bodies       resting bodies are computed in each step; heaps creep
+// pairs         an overlap filter that refuses every pair    no contacts, ghost lists, response or sweep; ray tests
+//                                                            and sweep tests still work
+// response      CF_NO_CONTACT_RESPONSE on every object       bodies fall through each other; Bullet still reports
+//                                                            contacts
+// sweep         m_useContinuous off, CCD thresholds 0        bodies that move by more than half their width in a
+//                                                            step may pass through thin bodies
+// sleeping      DISABLE_DEACTIVATION on dynamic bodies       Bullet computes resting bodies in each step; heaps
+//                                                            creep
 // rotation      angular factor and velocity 0, no            bodies keep their orientation: nothing tips over,
 //               gyroscopic forces                            rolls, or swings about a joint
 // friction      all friction 0, one friction direction       bodies slide for ever on any slope; heaps fall apart
 //
-// response and sweep need pairs; friction and sweep need response. Without these they are off, too.
+// response needs pairs. sweep and friction need pairs and response. Without these, they are off.
 //
-// In instructions per step, a heap of 250 bodies saves 76 % without pairs, 58 % without response, 16 % without
+// A heap of 250 bodies takes 76 % fewer instructions per step without pairs, 58 % without response, 16 % without
 // rotation, 2 % without friction. A resting heap costs twice as much without sleeping. 2000 static bodies cost a
 // fifteenth less without restingBoxes.
 //
-// A frame   Between two steps: apply() when the declaration changes, prepare() for each added body, release()
-//           before its removal, and beforeStep() or step().
-// Settings  Bodies and the world get their own settings back when an effect is declared again, and from the
-//           destructor. A value that the program sets meanwhile counts as their own, except DISABLE_DEACTIVATION
-//           while sleeping is off. Angular velocities do not come back.
-// Lifetime  The world, its broadphase, pair cache and former filter must outlive the configurator. No other filter
-//           may wrap the configurator's. Only objects in the world are touched.
-// Removal   An object removed without release() keeps the settings until it is back and apply() or prepare() meets
-//           it, or for good if the configurator ends first. Call release() before you delete an object: a new one
-//           at its address that has one of these settings is taken for it.
-// Other     Soft bodies and multibodies solve contacts of their own: only pairs affects them.
-// Memory    Held only for objects with overridden settings; after removal without release(), until an object is
-//           back at the address. Throws std::bad_alloc when memory runs out; repeat the call. Pairs are complete in
-//           the next step that returns.
+// A frame   Between two steps, call apply() if declarations change, prepare() after adding a body, and release()
+//           before removing a body. After these, call step(), or beforeStep() and stepSimulation().
+// Settings  The destructor gives bodies and the world their own settings back. So does apply() when an effect is
+//           declared again. If the program sets a value meanwhile, this value comes back instead, except
+//           DISABLE_DEACTIVATION while sleeping is off. Angular velocities do not come back.
+// Lifetime  The world, its broadphase, its pair cache and its former overlap filter must outlive the configurator.
+//           Do not wrap the configurator's filter. The configurator changes only objects in the world.
+// Removal   Call release() before you remove or delete an object. Otherwise a removed object keeps the overridden
+//           settings until it is in the world again and apply() or prepare() configures it, or for good if the
+//           configurator is destroyed first. A new object at a deleted object's address is mistaken for the
+//           deleted object if it has one of these settings.
+// Other     Soft bodies and multibodies solve their own contacts: only pairs affects them.
+// Memory    Used only for objects with overridden settings. After a removal without release(), memory is kept until
+//           an object is at that address again. Throws std::bad_alloc when memory runs out; repeat the call. The
+//           next step that does not throw completes the pairs.
 
 #include <integration/bullet/detail/kept_setting.hpp>
 #include <integration/bullet/export.hpp>
@@ -66,8 +69,8 @@ struct BodyEffects {
 
 /// The declared effects of a world.
 struct WorldEffects {
-    bool motion = true;        ///< only for WorldConfigurator::step()
-    bool restingBoxes = true;  ///< updated in each step, Bullet's default
+    bool motion = true;        ///< affects only WorldConfigurator::step()
+    bool restingBoxes = true;  ///< each step updates boxes of resting bodies, as in Bullet
     bool pairs = true;
     bool response = true;
     bool sweep = true;
@@ -75,52 +78,52 @@ struct WorldEffects {
     bool rotation = true;
     bool friction = true;
 
-    /// Restitution of every contact, 0 to 1; without it each body has its own.
+    /// Restitution of every contact, 0 to 1. If unset, bodies keep their own values.
     std::optional<btScalar> restitution{};
 
-    /// Sweeps convex bodies that move in a step by more than this share of the smallest edge of their shape's box;
-    /// without it, bodies with CCD thresholds of their own. Up to 0.5, no body passes a thin wall. Above, an
-    /// unswept body that moves by more than half its width may get its middle beyond the wall, and is pushed out on
-    /// the far side. Cost: a cast for each swept body, twice a step.
+    /// Sweeps each convex body that moves in a step by more than this share of the smallest edge of its shape's
+    /// box. If unset, bodies keep their own CCD thresholds. Up to 0.5, no body passes through a thin wall. Above
+    /// 0.5, an unswept body may move by more than half its width: if its middle gets beyond a thin wall, the wall
+    /// pushes it out on the far side. Cost: two casts per step for each swept body.
     std::optional<btScalar> fastFrom{};
 
-    /// Bodies slower than this [m/s] may fall asleep; without it each has its own threshold.
+    /// Bodies slower than this [m/s] may fall asleep. If unset, bodies keep their own thresholds.
     std::optional<btScalar> slowBelow{};
 
-    /// Takes effects away from single objects; empty for none. Two objects pair only if both may. Also called when
-    /// Bullet asks overlap filters, on the asking thread.
+    /// Returns the effects of an object, to switch effects off for single objects. May be empty. Two objects pair
+    /// only if both have `pairs`. The overlap filter also calls it, on the filter's thread.
     std::function<BodyEffects(const btCollisionObject&)> effectsOf{};
 };
 
-/// Lets a Bullet world compute no more than is declared.
+/// Makes a Bullet world compute only the declared effects.
 class HASHPHASE_BULLET_EXPORT WorldConfigurator {
 public:
     explicit WorldConfigurator(btDiscreteDynamicsWorld& world);
-    /// Gives back all settings. Pairs that return take memory: if it may run out, call apply({}) first.
+    /// Gives back all settings. Pairs that come back need memory. If memory may run out, call apply({}) first.
     ~WorldConfigurator();
     WorldConfigurator(const WorldConfigurator&) = delete;
     WorldConfigurator& operator=(const WorldConfigurator&) = delete;
 
     /// Sets what Bullet computes from the next step on. If this changes how bodies move, all bodies wake. Pairs
-    /// change at once; under a broadphase other than SpatialHashBroadphase, each object then gets a new proxy.
-    /// Cost: a look at each object, and at each contact and pair if these change.
+    /// change at once: under a broadphase other than SpatialHashBroadphase, by a new proxy for each object. Cost:
+    /// one pass over all objects, and over contacts and pairs if these may change.
     void apply(const WorldEffects& effects);
     [[nodiscard]] const WorldEffects& effects() const noexcept { return effects_; }
 
-    /// Configures an added object, as apply() would. Asserted: it is in the world. Cost: O(1).
+    /// Configures an added object, as apply() does. Asserted: the object is in the world. Cost: O(1).
     void prepare(btCollisionObject& object);
 
-    /// Gives an object its own settings back and forgets it, before it is removed from the world or deleted. Cost:
-    /// O(1).
+    /// Gives an object its own settings back, and forgets the object. Call it before you remove or delete the
+    /// object. Cost: O(1).
     void release(btCollisionObject& object);
 
-    /// Returns how many bodies will be swept in a step of this length [s]. With fastFrom, Bullet boxes and sweeps
-    /// ways only in steps with such bodies: a body that becomes fast within another step is swept from the next one
-    /// on. Call it before each step, or never. Cost: a look at each object.
+    /// Returns how many bodies Bullet will sweep in a step of this length [s]. With fastFrom, Bullet sweeps only in
+    /// steps with such bodies. In other steps, a body that becomes fast is swept from the next step on. Call it
+    /// before each step, or never. Cost: one pass over all objects.
     int beforeStep(btScalar timeStep);
 
-    /// Runs a step of this length [s]. With motion: stepSimulation(timeStep, 0), after beforeStep() if fastFrom is
-    /// set. Without motion: only pairs and contacts of the bodies where they are, if pairs are declared.
+    /// Runs a step of this length [s]. With motion, calls beforeStep() if fastFrom is set, then
+    /// stepSimulation(timeStep, 0). Without motion, only updates pairs and contacts, if pairs are declared.
     void step(btScalar timeStep);
 
     /// Returns the number of objects with overridden settings, including objects removed without release().
@@ -139,14 +142,14 @@ private:
         detail::KeptSetting<btScalar> ccdRadius;
         detail::KeptSetting<btScalar> slowBelow;
         bool isKeptAwake = false;
-        bool wasAway = false;  // in an apply()
+        bool wasAway = false;  // was not in the world during an apply()
         std::uint64_t lastSeen = 0;
 
         [[nodiscard]] bool isHeld() const noexcept;
         [[nodiscard]] bool mayBeOf(const btCollisionObject& object) const;
     };
 
-    /// Refuses pairs that are not declared, and asks the former filter about the rest.
+    /// Refuses pairs that are not declared. Asks the former filter about all other pairs.
     class Filter final : public btOverlapFilterCallback {
     public:
         explicit Filter(const WorldConfigurator& owner) : owner_(&owner) {}
@@ -182,10 +185,10 @@ private:
     detail::KeptSetting<bool> forcesBoxes_;
     detail::KeptSetting<bool> useContinuous_;
     detail::KeptSetting<int> frictionDirections_;
-    std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // of overridden objects
+    std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // overridden objects
     std::uint64_t applyCount_ = 0;
-    bool arePairsOld_ = false;       // until the filter was asked about every pair
-    bool areBodiesChanged_ = false;  // until all are awake
+    bool arePairsOld_ = false;       // until the filter has been asked about all pairs
+    bool areBodiesChanged_ = false;  // until all bodies are awake
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -2,7 +2,7 @@
 #pragma once
 
 // Thousands of small worlds at the same place, in one Bullet world, for training or copies of a level. Objects of
-// different worlds never pair. The broadphase of each world is as fast as alone (tests/benchmarks/run --only
+// different worlds never pair. The broadphase of each world is as fast as a separate one (tests/benchmarks/run --only
 // worlds).
 //
 //     hashphase::WorldsConfig config;
@@ -11,20 +11,21 @@
 //     hashphase::WorldsBroadphase broadphase(config);
 //     btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
 //
-// Each world is a SpatialHashBroadphase with its own grid, over one shared pair cache: see world(). Use its grid()
+// Each world is a SpatialHashBroadphase with its own grid. All worlds share one pair cache. Use world(number).grid()
 // for culling, picking and other queries of one world.
 //
 // One world   Each object is in one world. A shared floor needs a body in each world.
-// All worlds  Queries of this class, and Bullet's own, such as btCollisionWorld::rayTest(), search all worlds in
-//             turn. Members for a proxy work on its world. rayTests(), closestRays() and createProxies() exist for
-//             single worlds only. Casts of fast bodies search all worlds, but hit only their own.
-// Ids         m_uniqueId counts through all worlds. ProxyIds repeat between worlds.
-// Moving      An object stays in its world until its proxy is created again: change what worldOf reads, then call
-//             btCollisionWorld::refreshBroadphaseProxy().
-// Threads     Queries of all and of single worlds: any number at the same time. Everything else needs the
-//             broadphase, with all its worlds, for itself.
-// Callbacks, bad data, memory, misuse: as SpatialHashBroadphase. shiftOrigin() cannot be repeated after memory ran
-//             out. What no callback may call, it may not call for another world either (asserted).
+// All worlds  Queries of this class search all worlds in turn, and so do Bullet's queries, such as
+//             btCollisionWorld::rayTest(). Members that take a proxy work on the proxy's world. rayTests(),
+//             closestRays() and createProxies() exist only in single worlds. Casts of fast bodies search all worlds,
+//             but hit only bodies of the same world.
+// Ids         m_uniqueId is unique over all worlds, ProxyId only within a world.
+// Moving      To move an object to another world, change the value that worldOf reads. Then call
+//             btCollisionWorld::refreshBroadphaseProxy(), which creates the proxy again.
+// Threads     Any number of threads may query all worlds and single worlds at the same time. During any other call,
+//             no other thread may use the broadphase or one of its worlds.
+// Callbacks, bad data, memory, misuse: as SpatialHashBroadphase. Exception: do not repeat shiftOrigin() after memory
+//             ran out. A call that is forbidden in a callback is forbidden for all worlds (asserted).
 
 #include <broadphase/core/peak_watch.hpp>
 #include <broadphase/query_cost.hpp>
@@ -50,28 +51,29 @@ struct WorldsConfig {
     int worldCount = 1;
 
     /// Required. Returns the number of the object's world, from 0 on. createProxy() calls it for every object, and
-    /// so do btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy(). Set what it reads before: the
-    /// user index of a new object is -1, an invalid number.
+    /// so do btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy(). Set the value that it reads before
+    /// these calls: the user index of a new object is -1, an invalid number.
     std::function<int(const btCollisionObject& object)> worldOf{};
 
-    /// Settings of each world. parallelFor runs over the worlds; each world runs on one thread.
+    /// Settings of each world. parallelFor updates several worlds at the same time, each on one thread.
     SpatialHashConfig each{};
 };
 
-/// Returns what is wrong, in a sentence, as configError(const SpatialHashConfig&); empty if nothing is.
+/// Returns the fault of the configuration in a sentence; empty if it is valid. Also checks WorldsConfig::each.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string configError(const WorldsConfig& config);
 
-/// A btBroadphaseInterface of many worlds that never meet.
+/// A btBroadphaseInterface of many worlds whose objects never pair.
 class HASHPHASE_BULLET_EXPORT WorldsBroadphase final : public btBroadphaseInterface,
                                                        private detail::CacheWatcher {
 public:
     static constexpr int kMostWorlds = 1 << 16;
 
-    /// Makes all worlds, and owns a PairCache. Throws std::invalid_argument with configError(config).
+    /// Makes all worlds, and owns a new PairCache. Throws std::invalid_argument with configError(config).
     explicit WorldsBroadphase(const WorldsConfig& config) : WorldsBroadphase(nullptr, config) {}
 
-    /// Uses `pairCache`, which must outlive the broadphase; with nullptr, as above. With PairOrder::canonical,
-    /// pairs of a world have the order of a separate broadphase. Asserted: the cache has no pairs yet.
+    /// Uses `pairCache`, which must outlive the broadphase. With nullptr, owns a new PairCache. With
+    /// PairOrder::canonical, the pairs of each world have the same order as in a separate broadphase. Asserted: the
+    /// cache has no pairs yet.
     WorldsBroadphase(PairCache* pairCache, const WorldsConfig& config);
 
     ~WorldsBroadphase() override;
@@ -82,10 +84,10 @@ public:
 
     [[nodiscard]] int worldCount() const noexcept { return static_cast<int>(worlds_.size()); }
 
-    /// Returns the world of this number. All calls of a SpatialHashBroadphase are allowed, and concern this world
-    /// alone: createProxies() creates proxies in it whatever worldOf returns, and resetPool() restarts it while
-    /// others run on. Three things differ: all worlds share unique ids and the pair cache, releaseUnusedMemory()
-    /// leaves the cache as it is, and parallelFor is not set. Asserted: the number is valid.
+    /// Returns the world with this number. All its members may be called, and affect only this world:
+    /// createProxies() ignores worldOf, and resetPool() resets no other world. Differences from a separate
+    /// SpatialHashBroadphase: all worlds share unique ids and the pair cache, releaseUnusedMemory() does not affect
+    /// the cache, and parallelFor is not set. Asserted: the number is valid.
     [[nodiscard]] SpatialHashBroadphase& world(int number);
     [[nodiscard]] const SpatialHashBroadphase& world(int number) const;
 
@@ -96,8 +98,8 @@ public:
 
     /// As SpatialHashBroadphase::createProxy(), in the world that WorldsConfig::worldOf returns for `userPtr`, a
     /// btCollisionObject. Throws std::invalid_argument, and creates nothing, if `userPtr` is NULL or the number is
-    /// invalid. Then remove the object from Bullet's world; after refreshBroadphaseProxy(), first call
-    /// object.setBroadphaseHandle(nullptr), as its proxy is gone.
+    /// invalid. In that case, remove the object from Bullet's world. If refreshBroadphaseProxy() threw, first call
+    /// object.setBroadphaseHandle(nullptr), because the old proxy is destroyed.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -106,8 +108,8 @@ public:
                  btDispatcher* dispatcher) override;
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
-    /// As SpatialHashBroadphase, for each world in turn. With stopWhenProcessReturnsFalse, a callback that ends the
-    /// query of one world ends it for all. Cost: O(worlds), and the query of each.
+    /// As SpatialHashBroadphase, for each world in turn. With stopWhenProcessReturnsFalse, a callback that returns
+    /// false ends the query for all worlds. Cost: O(worlds), plus a query in each world.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
@@ -115,11 +117,11 @@ public:
     void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                   btBroadphaseAabbCallback& callback) override;
 
-    /// Makes the cache's pairs exact, as SpatialHashBroadphase::calculateOverlappingPairs() of each world. Order:
-    /// parted pairs of all worlds go first, then new pairs come, world by world. With parallelFor, worlds are
-    /// updated at the same time, unless there is an overlap filter callback; the result is equal on any number of
-    /// threads. Cost: the worlds with changes, and one check for each other world. The others keep unused memory
-    /// until releaseUnusedMemory(), and their lastCost().
+    /// Makes the cache's pairs exact, as SpatialHashBroadphase::calculateOverlappingPairs() for each world. Order:
+    /// first removes separated pairs of all worlds, then adds new pairs, world by world. With parallelFor, updates
+    /// several worlds at the same time. If there is an overlap filter callback, updates one world after another. The
+    /// result does not depend on the number of threads. Cost: an update of each changed world, and one check for
+    /// each unchanged world. Unchanged worlds keep their lastCost(), and unused memory until releaseUnusedMemory().
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -127,10 +129,10 @@ public:
         return pairCache_;
     }
 
-    /// Returns the box around all boxes of all worlds; zero if there are none. Cost: O(proxies).
+    /// Returns the box around all boxes of all worlds; zero without boxes. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
-    /// If no proxy is alive in any world: SpatialHashBroadphase::resetPool() of all, and m_uniqueId counts from 1
+    /// If no world has a proxy, calls SpatialHashBroadphase::resetPool() on all worlds, and m_uniqueId counts from 1
     /// again. Otherwise does nothing. Asserted: not within callbacks.
     void resetPool(btDispatcher* dispatcher) override;
 
@@ -139,17 +141,17 @@ public:
 
     // --- Many at once ----------------------------------------------------------------------------
 
-    /// setAabb() for each proxy, of any worlds, in order, on the caller's thread. Asserted: the spans have equal
-    /// lengths.
+    /// Calls setAabb() for each proxy, in order, on the caller's thread. Proxies may be in different worlds.
+    /// Asserted: the spans have equal lengths.
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
-    /// As SpatialHashBroadphase::destroyProxies(), for proxies of any worlds.
+    /// As SpatialHashBroadphase::destroyProxies(). Proxies may be in different worlds.
     void destroyProxies(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
 
     // --- Beyond Bullet, as SpatialHashBroadphase -------------------------------------------------
 
-    /// Finds the closest hit in any world. Returns the cost of all. Cost: O(worlds), and a query in each up to the
-    /// nearest hit so far.
+    /// Finds the closest hit in any world. Returns the summed cost of all worlds' queries. Cost: O(worlds), plus a
+    /// query in each world, which ends at the nearest hit so far.
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 
@@ -157,7 +159,7 @@ public:
     void refilter(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
     void refilterAll(btDispatcher* dispatcher);
 
-    /// Does nothing for proxies of different worlds, which are no pair anyway.
+    /// Does nothing for proxies of different worlds, which never pair anyway.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     [[nodiscard]] bool isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const;
@@ -169,7 +171,7 @@ public:
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// Shifts all worlds. Returns how many boxes were rounded. If memory runs out, only the first worlds are
-    /// shifted: do not repeat the call, which would shift these twice.
+    /// shifted. Do not repeat the call: it would shift the first worlds twice.
     std::size_t shiftOrigin(const btVector3& shift);
 
     [[nodiscard]] const WorldsConfig& config() const noexcept { return config_; }
@@ -177,17 +179,17 @@ public:
     /// Returns the bytes held by all worlds, and by the pair cache if the broadphase made it.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// SpatialHashBroadphase::releaseUnusedMemory() of all worlds, and of the pair cache.
+    /// Calls releaseUnusedMemory() of all worlds and of the pair cache.
     void releaseUnusedMemory() noexcept;
 
-    /// Returns the broken invariant of any world, or of its own PairCache, in a sentence; empty if all hold. Also:
-    /// - The cache holds as many pairs as all worlds together (its own cache, if the program took out none since).
+    /// Returns a broken invariant of a world or of the owned PairCache, in a sentence; empty if all hold. Also:
+    /// - The owned cache holds as many pairs as all worlds together, unless the program took pairs out.
     [[nodiscard]] std::string validate() const;
 
 private:
     using World = SpatialHashBroadphase;
 
-    /// A world under update, with its changes.
+    /// A world that is being updated, with its changes.
     struct Updated {
         World* world;
         PairChanges changes{};
@@ -215,15 +217,15 @@ private:
     void setBehind() noexcept;
 
     WorldsConfig config_;
-    std::unique_ptr<PairCache> ownCache_;  // if none was given
-    PairCache* pairCache_;                 // null when it has ended
+    std::unique_ptr<PairCache> ownCache_;  // null if the program gave a cache
+    PairCache* pairCache_;                 // null after the cache was destroyed
     int lastUniqueId_ = 0;
     std::vector<std::unique_ptr<World>> worlds_;
-    std::vector<Updated> updated_;       // of the calculation under way
-    std::vector<BulletProxyPair> died_;  // in all of these
+    std::vector<Updated> updated_;       // worlds with changes
+    std::vector<BulletProxyPair> died_;  // in all updated worlds
     std::vector<BulletProxyPair> born_;
     std::vector<int> notedIds_;  // scratch of setAabbs()
-    detail::PeakWatch peaks_;    // of the cache
+    detail::PeakWatch peaks_;    // of the pair cache
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

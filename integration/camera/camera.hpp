@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A camera and its viewport: from pixels to rays and rectangles.
+// A camera and its viewport: turns pixels into rays and rectangles.
 //
 //     const Camera<float> camera(viewProjection, DepthRange::zeroToOne, Viewport(0, 0, 1920, 1080));
 //     const Picked<float> picked = pickNearest(grid, camera.rayThrough({mouseX + 0.5, mouseY + 0.5}));
 //
-// Cameras   All cameras of frustum.hpp. Computed in double precision, and rounded once at the end.
+// Cameras   All cameras of frustum.hpp. Results are computed in double precision, and rounded once at the end.
 // Pixels    The middle of the pixel in column i and row k is (i + 0.5, k + 0.5).
 // Units     metres in the world
 // Bad data  Rays and rectangles are empty if the matrix has no inverse, the viewport has no size, or a pixel is NaN.
-//           cameraError() returns the camera's fault.
-// Threads   Values: use them on any thread.
+//           cameraError() explains faults of matrix and viewport.
+// Threads   Cameras are values: use them on any thread.
 
 #include <broadphase/regions.hpp>
 #include <integration/camera/detail/camera_inverse.hpp>
@@ -25,15 +25,15 @@
 
 namespace hashphase {
 
-/// A place in the window: x to the right, y downwards [pixels].
+/// A position in the window: x to the right, y downwards [pixels].
 using Pixel = detail::Vector2<double>;
 
 /// The part of the window that the camera draws to [pixels].
 struct Viewport {
-    double x = 0;       ///< of the upper left corner
-    double y = 0;       ///< of the upper left corner
-    double width = 0;   ///< above 0
-    double height = 0;  ///< above 0
+    double x = 0;       ///< left edge
+    double y = 0;       ///< top edge
+    double width = 0;   ///< more than 0
+    double height = 0;  ///< more than 0
 
     constexpr Viewport() = default;
 
@@ -48,8 +48,8 @@ struct Viewport {
           height(static_cast<double>(rows)) {}
 };
 
-/// Whether the near plane has the lowest depth (nearFirst) or the highest (reversed). Matters for orthographic
-/// cameras only.
+/// Which depth the near plane has: the lowest (nearFirst) or the highest (reversed). Matters only for orthographic
+/// cameras.
 enum class DepthOrder : std::uint8_t { nearFirst, reversed };
 
 namespace detail {
@@ -60,8 +60,8 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Returns in a sentence why nothing can be seen through the 4 x 4 matrix and the viewport: not finite, singular, or
-/// a viewport without a size. Empty if there is no fault.
+/// Returns a sentence that explains why nothing is visible through the 4 x 4 matrix and the viewport: the matrix is
+/// singular, a number is not finite, or the viewport has no size. Empty if there is no fault.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string cameraError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport) {
@@ -74,8 +74,8 @@ class HASHPHASE_CAMERA_TEMPLATE_EXPORT Camera {
 public:
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 
-    /// Takes a 4 x 4 matrix from world to clip coordinates (frustum.hpp). Bad data makes an invalid camera, without a
-    /// throw. Cost: one inversion of the matrix.
+    /// Takes a 4 x 4 matrix from world to clip coordinates (frustum.hpp). Does not throw for bad data: isValid()
+    /// returns false instead. Cost: one inversion of the matrix.
     template <class Derived>
     Camera(const Eigen::MatrixBase<Derived>& viewProjection, DepthRange depthRange,
            const Viewport& viewport, DepthOrder depthOrder = DepthOrder::nearFirst)
@@ -84,15 +84,17 @@ public:
     /// Returns false if cameraError() is not empty.
     [[nodiscard]] bool isValid() const noexcept { return isValid_; }
 
-    /// Returns the ray at a pixel, inside or outside the viewport, from the near plane to the far plane. It ends at
-    /// most `farthest` [m] behind the near plane, measured along the view; an orthographic ray always ends on the far
-    /// plane. Empty (RayRegion::isEmpty()) if nothing is seen there, or `farthest` is not positive.
+    /// Returns the ray through a pixel, inside or outside the viewport, from the near plane to the far plane. A
+    /// perspective ray ends at most `farthest` [m] behind the near plane, measured along the view; an orthographic
+    /// ray always ends on the far plane. Empty (RayRegion::isEmpty()) if nothing is visible at the pixel, or
+    /// `farthest` is not positive.
     [[nodiscard]] RayRegion<Scalar> rayThrough(const Pixel& pixel,
                                                double farthest = kFarthestView) const;
 
-    /// Returns the part in the viewport of the rectangle between two corners, in any order, in normalised device
-    /// coordinates. It may have no area. isEmpty() if no part is in the viewport.
-    // A template, like viewProjection(), because Eigen aligns results by the program's options.
+    /// Takes two opposite corners in any order. Returns the part of their rectangle that is in the viewport, in
+    /// normalised device coordinates. The part may be a line or a point. The part isEmpty() if the rectangle is
+    /// outside the viewport.
+    // A template, like viewProjection(), because Eigen's alignment depends on the program's options.
     template <class Rectangle = ScreenRectangle<Scalar>>
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Rectangle rectangleBetween(const Pixel& a,
                                                                       const Pixel& b) const {
@@ -101,10 +103,10 @@ public:
         return {Corner(edges[0], edges[1]), Corner(edges[2], edges[3])};
     }
 
-    /// rectangleBetween() as left, bottom, right and top.
+    /// rectangleBetween() as left, bottom, right and top edges.
     [[nodiscard]] detail::ScreenEdges<Scalar> edgesBetween(const Pixel& a, const Pixel& b) const;
 
-    /// The matrix, as given.
+    /// The matrix that the constructor took.
     template <class Result = Matrix>
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Result viewProjection() const noexcept {
         return viewProjection_;

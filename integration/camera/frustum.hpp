@@ -3,13 +3,14 @@
 
 // The view of a camera as a convex region.
 //
-// Matrices  Any view-projection matrix from world coordinates (columns: x, y, z, 1) to clip coordinates: perspective,
-//           orthographic or oblique, with a reversed depth range or an infinite far plane. Seen points have
-//           -w <= x <= w, -w <= y <= w, and z by DepthRange. For a column-major `const float* matrix` (OpenGL, GLM,
-//           Vulkan), pass Eigen::Map<const Eigen::Matrix4f>(matrix) to frustumRegion<float>().
+// Matrices  Any 4 x 4 matrix that takes world coordinates, as columns (x, y, z, 1), to clip coordinates. It may be
+//           perspective, orthographic or oblique, with a reversed depth range or an infinite far plane. Visible
+//           points have -w <= x <= w, -w <= y <= w, and z in the DepthRange. For a column-major `const float* matrix`
+//           (OpenGL, GLM, Vulkan), pass Eigen::Map<const Eigen::Matrix4f>(matrix) to frustumRegion<float>().
 // Units     metres in the world; normalised device coordinates from -1 to 1 on the screen
-// Bad data  A matrix with a NaN or infinity sees nothing; frustumError() returns the reason. A singular matrix sees
-//           the set that its planes enclose: a line, a sheet or nothing. A transposed matrix is another valid camera.
+// Bad data  A matrix with a NaN or infinity sees nothing: frustumError() returns the reason. A singular matrix sees
+//           only a line, a sheet or nothing. A transposed matrix is a valid matrix with a wrong view: no error
+//           reports it.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/convex_region.hpp>
@@ -26,8 +27,8 @@
 
 namespace hashphase {
 
-/// Depths of clip space: z from -w to w (minusOneToOne: OpenGL), or from 0 to w (zeroToOne: Direct3D, Vulkan, Metal;
-/// also if reversed).
+/// Depths of clip space: z from -w to w (minusOneToOne: OpenGL), or from 0 to w (zeroToOne: Direct3D, Vulkan, Metal).
+/// Reversed depths do not change the choice.
 enum class DepthRange : std::uint8_t { minusOneToOne, zeroToOne };
 
 /// A part of the screen in normalised device coordinates: x to the right, y upwards, from -1 to 1.
@@ -43,11 +44,11 @@ template <class Scalar>
 
 namespace detail {
 
-/// left, bottom, right, top
+/// Edges: left, bottom, right, top.
 template <class Scalar>
 using ScreenEdges = std::array<Scalar, 4>;
 
-// Compiled with the program: what the libraries get does not depend on how the program's Eigen aligns
+// Inlined into the program, so that the libraries do not depend on how the program's Eigen aligns
 // (core/unaligned.hpp).
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline ScreenEdges<Scalar> edgesOf(
@@ -65,8 +66,8 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Returns in a sentence why nothing can be seen through the 4 x 4 matrix or that part of the screen; empty if there
-/// is no fault. It cannot find a wrong matrix: test a point that must be visible.
+/// Returns a sentence that explains why nothing is visible through the 4 x 4 matrix, or in that part of the screen.
+/// Empty if there is no fault. A wrong but valid matrix is not detected: test a point that must be visible.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string frustumError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
@@ -74,10 +75,10 @@ template <class Scalar>
     return detail::frustumError<Scalar>(viewProjection, detail::edgesOf<Scalar>(rectangle));
 }
 
-/// Returns the planes left, right, bottom, top, near and far of the view through the 4 x 4 matrix, in a rectangle of
-/// the screen. They face inwards and are not normalised. A reversed depth range exchanges near and far. An infinite
-/// far plane has every point inside. Source: Gribb and Hartmann, "Fast Extraction of Viewing Frustum Planes from the
-/// World-View-Projection Matrix" (2001).
+/// Returns the planes of the view through the 4 x 4 matrix and a rectangle of the screen, in the order left, right,
+/// bottom, top, near, far. The planes face inwards and are not normalised. A reversed depth range exchanges near and
+/// far. Every point is inside an infinite far plane. Source: Gribb and Hartmann, "Fast Extraction of Viewing Frustum
+/// Planes from the World-View-Projection Matrix" (2001).
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::array<Eigen::Hyperplane<Scalar, 3>, 6>
 frustumPlanes(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
@@ -89,7 +90,7 @@ frustumPlanes(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange dept
             Plane(planes[3]), Plane(planes[4]), Plane(planes[5])};
 }
 
-/// Returns the view as a region, from frustumPlanes(). Cost: some microseconds.
+/// Returns the region that the planes of frustumPlanes() enclose. Cost: some microseconds.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline ConvexRegion<Scalar> frustumRegion(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,
@@ -101,7 +102,7 @@ template <class Scalar>
         containment, touch);
 }
 
-/// Returns the view through the whole screen as a region.
+/// Returns the region of the view through the whole screen.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline ConvexRegion<Scalar> frustumRegion(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,

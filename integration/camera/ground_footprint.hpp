@@ -4,14 +4,14 @@
 // The part of the ground that a camera sees: the footprint of a screen rectangle on a map.
 //
 // Footprint  The part of the view (frustum.hpp) between two heights, projected along the up axis: a convex polygon.
-//            Every object that the view touches between the heights stands on it. With equal heights it is the view's
-//            cut with that plane.
+//            Seen from above, every object that the view touches between the heights touches the polygon. With equal
+//            heights, the polygon is the view's intersection with the plane at that height.
 // Horizon    Rays that never reach the ground end on the far plane, or `farthest` behind the near plane if that is
 //            nearer. Orthographic rays always end on the far plane.
 // Units      metres
-// Bad data   The footprint is empty with a singular matrix, heights that are NaN or exchanged, or a `farthest` that
-//            is not positive and finite: footprintError() returns the reason. Else an empty footprint means that the
-//            camera sees no ground.
+// Bad data   The footprint is empty if the matrix is singular, a height is NaN, `low` is above `high`, or `farthest`
+//            is not positive and finite. footprintError() returns the reason. Otherwise, an empty footprint means
+//            that the camera sees no ground.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -26,10 +26,10 @@
 
 namespace hashphase {
 
-/// By default a view ends here, if its far plane is farther [m behind the near plane].
+/// By default, views end at most this far behind the near plane [m].
 inline constexpr double kFarthestView = 1e6;
 
-/// Lowest and highest point of all objects on the ground.
+/// The heights between which all objects on the ground lie.
 template <class Scalar>
 struct HeightRange {
     Scalar low = 0;   ///< [m]; -infinity for no limit
@@ -37,15 +37,15 @@ struct HeightRange {
     UpAxis up = UpAxis::y;
 };
 
-/// A convex polygon on the map, and the prism over it between two heights. The paper's drag box and top-down camera
-/// take two corners and one height instead.
+/// A convex polygon on the map, and the vertical prism over it between two heights. (The paper's drag box and
+/// top-down camera use two corners and one height instead.)
 template <class Scalar>
 class HASHPHASE_CAMERA_TEMPLATE_EXPORT GroundFootprint {
 public:
-    /// A point of the map [m]: (y, z), (x, z) or (x, y), if x, y or z is up.
+    /// A point of the map [m]: (y, z) if x is up, (x, z) if y is up, (x, y) if z is up.
     using Point = detail::Vector2<Scalar>;
 
-    /// The most corners: a polyhedron with nine planes has at most 14.
+    /// Maximum number of corners: a polyhedron with nine faces has at most 14.
     static constexpr std::size_t kMostCorners = 14;
 
     /// Takes a 4 x 4 matrix (frustum.hpp), the heights, and a rectangle of the screen. The view ends at most
@@ -60,14 +60,14 @@ public:
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
-    /// The polygon's corners, in the direction from the first axis to the second. One or two if the footprint has no
-    /// area.
+    /// The polygon's corners, in the direction of rotation from the first axis to the second. A footprint without
+    /// area has one or two corners.
     [[nodiscard]] std::span<const Point> corners() const noexcept {
         return {corners_.begin(), corners_.end()};
     }
 
-    /// Returns the vertical prism over the polygon between the heights, for boxes that touch it or are inside. Every
-    /// box that touches the view between the heights touches the prism. Cost: as a ConvexRegion.
+    /// Returns the vertical prism over the polygon between the heights, for boxes that touch the prism or are inside.
+    /// Every box that touches the view between the heights touches the prism. Cost: as a ConvexRegion.
     [[nodiscard]] ConvexRegion<Scalar> region(
         Containment containment = Containment::touching) const;
 
@@ -100,7 +100,8 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Returns in a sentence why there is no footprint (see Bad data). Empty if there may be one.
+/// Returns a sentence that explains why the footprint is empty (see Bad data). Empty if the data are good; the camera
+/// may still see no ground.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the proxies that a camera sees: their boxes touch its frustum, or another convex volume.
+// Finds the proxies that a camera sees: their boxes touch the frustum, or another convex volume.
 //
-// Exact     Every proxy whose box touches the volume is in the set. So are a few others: near an edge of the volume,
-//           from a margin, or from an earlier frame. overdraw() counts them.
+// Exact     The set contains every proxy whose box touches the volume. It may contain a few other proxies: near an
+//           edge of the volume, within the margin, or from an earlier frame. overdraw() counts these.
 // Frame     Call look() once, with the camera of the frame.
-// Threads   look() reads the grid, as queries do, and needs this object for itself.
+// Threads   look() is a query of the grid. No other thread may use this object meanwhile.
 // Units     metres
-// Bad data  With a volume without a point, or with a NaN, the set is empty. frustumError() returns the reason.
-// Memory    A bit for each index up to the highest visible one. A frame like the last one allocates nothing. Room for
-//           more than eight times the need is released after 256 searches.
+// Bad data  The set is empty if the volume has a NaN, or contains no point. frustumError() returns the reason.
+// Memory    One bit for each index up to the highest visible index. A frame that needs no more than before allocates
+//           nothing. 256 searches in a row that need less than an eighth of the memory release it.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/peak_watch.hpp>
@@ -35,66 +35,68 @@ struct Overdraw {
     std::size_t unseen = 0;   ///< proxies in the set whose boxes do not touch the volume
 };
 
-/// Finds the set of proxies that a camera sees, and keeps it.
+/// Finds and keeps the set of proxies that a camera sees.
 template <class Scalar>
 class HASHPHASE_CULLING_TEMPLATE_EXPORT Culler {
 public:
     using Frustum = ConvexRegion<Scalar>;
     using View [[deprecated("Frustum")]] = Frustum;
 
-    /// With a `margin` [m], look() also finds proxies at most that far from the volume, and may keep the set for
-    /// several frames. A negative or NaN margin counts as 0.
+    /// With a `margin` [m], look() also finds proxies at most that far from the volume. So look() can keep the set
+    /// for several frames. A negative or NaN margin counts as 0.
     explicit Culler(Scalar margin = 0);
 
     // --- Once a frame ----------------------------------------------------------------------------
 
-    /// Finds the proxies that touch the frustum and pass the filter, or keeps the last set if it certainly contains
-    /// them: the frustum is within the last set's volume, grown by the margin, no proxy was added or removed
-    /// (Grid::populationNumber()), and none can have come in. With Containment::inside no set is kept.
-    /// Touch::byPlanes is faster than exact.
+    /// Finds the proxies whose boxes touch the frustum and which the filter accepts. Keeps the last set if it
+    /// certainly contains these proxies: the frustum is within the last searched volume (which was grown by the
+    /// margin), no proxy was added or removed (Grid::populationNumber()), and no box can have moved into the frustum.
+    /// With Containment::inside, look() always searches. Touch::byPlanes is faster than Touch::exact.
     ///
-    /// `moved` [m] is how far any corner of a box may have moved since the last call; infinite if unknown, or if the
-    /// filter has changed. Returns the query's cost, zeros if the set was kept. Asserted: not called from the filter
-    /// or forEach(). Cost: Grid::visit() of the volume; only boxes in cells at its surface are tested.
+    /// `moved` [m] is how far any corner of a box may have moved since the last call. Pass infinity if it is unknown,
+    /// or the filter has changed. Returns the query's cost: zeros if the set was kept. Asserted: not called from the
+    /// filter or forEach(). Cost: Grid::visit() of the volume; only boxes in cells at the volume's surface are
+    /// tested.
     QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
     QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum, ProxyFilter filter,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
 
-    /// Notes that corners of boxes may have moved by up to `moved` [m] in a frame without look().
+    /// Call it in a frame without look(), if corners of boxes may have moved by up to `moved` [m].
     void noteMoves(Scalar moved) noexcept;
 
-    /// Removes the proxy with that index from the set. Call it for a removed proxy if you read the set before the
-    /// next look().
+    /// Removes the proxy with this index from the set. If you remove a proxy from the grid, and read the set before
+    /// the next look(), call this too.
     void forget(std::uint32_t index) noexcept {
         if (index / 64 < bits_.size()) {
             bits_[index / 64] &= ~(std::uint64_t{1} << index % 64);
         }
     }
 
-    /// Number of times that look() has searched, instead of keeping the set.
+    /// Number of calls of look() that searched, instead of keeping the set.
     [[nodiscard]] std::uint64_t findCount() const noexcept { return findCount_; }
 
-    /// While frozen, look() keeps its volume, whatever the camera does, so that you see the set from outside. Moving
+    /// While frozen, look() ignores the camera and keeps its volume, so that you can see the set from outside. Moving
     /// boxes are still found.
     void freeze(bool isFrozen) noexcept { isFrozen_ = isFrozen; }
     [[nodiscard]] bool isFrozen() const noexcept { return isFrozen_; }
 
     // --- The visible set -------------------------------------------------------------------------
 
-    /// Returns whether the proxy is in the set. A removed proxy is, until the next look() or forget(), and so is a
-    /// new proxy with its index.
+    /// Returns whether the proxy is in the set. Until the next look() or forget(), this is also true for a removed
+    /// proxy of the set, and for a new proxy with the same index.
     [[nodiscard]] bool isVisible(ProxyId id) const noexcept {
         return id.index / 64 < bits_.size() && (bits_[id.index / 64] >> (id.index % 64) & 1) != 0;
     }
 
-    /// Bit i % 64 of word i / 64 is set if the proxy with index i is in the set. No index beyond the end is.
+    /// Bit i % 64 of word i / 64 is set if the proxy with index i is in the set. Indices beyond the end are not in
+    /// the set.
     [[nodiscard]] std::span<const std::uint64_t> bits() const noexcept { return bits_; }
 
     [[nodiscard]] std::size_t count() const noexcept;
 
-    /// Calls visit(index) for the ProxyId::index of every proxy in the set, ascending. Grid::idAt() returns its id.
-    /// Asserted: visit() does not call look(). Cost: a 64th of the highest index, and the calls.
+    /// Calls visit(index) with the ProxyId::index of every proxy in the set, in ascending order. Grid::idAt() returns
+    /// the id. Asserted: visit() does not call look(). Cost: one step per 64 indices, and the calls.
     template <class Visit>
     void forEach(Visit&& visit) const {
         const detail::QueryScope scope(this);
@@ -106,7 +108,7 @@ public:
         }
     }
 
-    /// The volume of the last look(), or the frozen one, without the margin.
+    /// The volume of the last look() without the margin, or the frozen volume.
     [[nodiscard]] const Frustum& frustum() const noexcept { return frustum_; }
     [[deprecated("frustum()")]] [[nodiscard]] const Frustum& view() const noexcept {
         return frustum_;
@@ -126,10 +128,10 @@ private:
     Scalar margin_;
     Scalar moved_;  // since the set was found
     Frustum frustum_;
-    Frustum grown_;  // in which the set was found
+    Frustum grown_;  // the last searched volume
     bool isFrozen_ = false;
     std::uint64_t findCount_ = 0;
-    std::uint64_t population_ = 0;  // of which the set was found
+    std::uint64_t population_ = 0;  // of the grid at the last search
     std::vector<std::uint64_t> bits_;
     detail::PeakWatch peaks_;
 };

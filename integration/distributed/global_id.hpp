@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Ids that name an object on all ranks. A ProxyId is valid in one grid only.
+// Ids of objects that are valid on all ranks. A ProxyId is valid in one grid only.
 
 #include <broadphase/export.hpp>
 
@@ -12,14 +12,14 @@
 
 namespace hashphase {
 
-/// Names one object on all ranks. Choose a different number for each object that exists at the same time.
+/// The id of one object on all ranks. Objects that exist at the same time must have different numbers.
 struct GlobalId {
     std::uint64_t value = 0;
 
     friend constexpr auto operator<=>(const GlobalId&, const GlobalId&) = default;
 };
 
-/// The two objects of a pair, first < second. Ordered by first, then by second.
+/// The two objects of a pair, first < second. Pairs are ordered by first, then by second.
 struct GlobalPair {
     GlobalId first;
     GlobalId second;
@@ -27,7 +27,7 @@ struct GlobalPair {
     friend constexpr auto operator<=>(const GlobalPair&, const GlobalPair&) = default;
 };
 
-/// Returns the pair of two objects, given in any order.
+/// Returns the pair of two objects, passed in any order.
 [[nodiscard]] constexpr GlobalPair globalPair(GlobalId a, GlobalId b) noexcept {
     return a < b ? GlobalPair{a, b} : GlobalPair{b, a};
 }
@@ -45,8 +45,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// A set of pairs as two numbers that do not depend on the order of pairs. Different sets have different sums, except
-/// with a chance of 2^-64. Add the sums of ranks by +=.
+/// A checksum of a set of pairs: a count and a hash, independent of the order of pairs. Different sets have different
+/// sums, except with a chance of 2^-64. Add the sums of ranks with +=.
 struct PairSum {
     std::uint64_t count = 0;
     std::uint64_t hash = 0;
@@ -66,7 +66,7 @@ struct PairSum {
 
 }  // namespace hashphase
 
-/// For keys of std::unordered_map.
+/// Allows GlobalId as key of std::unordered_map.
 template <>
 struct std::hash<hashphase::GlobalId> {
     [[nodiscard]] std::size_t operator()(const hashphase::GlobalId& id) const noexcept {

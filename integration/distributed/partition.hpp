@@ -3,12 +3,12 @@
 
 // Space cut into regions, one for each rank (process) of a simulation.
 //
-// Regions  A tree of cuts by planes across an axis. A region is a box with its lower faces, without its upper ones:
-//          every point is in exactly one. Outer regions are infinite.
-// Pairs    A pair has a point: the larger of both min corners on each axis. The rank whose region contains it has
-//          both boxes, and reports the pair: once, without messages.
-// Exact    Coordinates are only compared with cuts: nothing is rounded.
-// Threads  const members from any number of threads
+// Regions  A tree of axis-aligned planes cuts space into boxes. Regions are half-open: a region includes its min
+//          faces, not its max faces. Every point is in exactly one region. Outer regions are infinite.
+// Pairs    A pair has a point: on each axis, the larger coordinate of both min corners. The rank whose region
+//          contains the point has both boxes, and reports the pair, once and without messages.
+// Exact    Coordinates are compared with cuts, and never rounded.
+// Threads  Any number of threads may call const members at the same time.
 // Source   Recursive bisection after M. Berger and S. Bokhari, "A partitioning strategy for nonuniform problems on
 //          multiprocessors", 1987. The pair's point as in waLBerla, C. Godenschwager et al., 2013.
 
@@ -28,7 +28,7 @@
 
 namespace hashphase {
 
-/// A plane across an axis. Points with a coordinate less than `at` are below it, all others above.
+/// A plane across an axis. Points with a coordinate less than `at` are below the plane, all other points above it.
 template <class Scalar>
 struct Cut {
     Scalar at = 0;           ///< [m]
@@ -37,41 +37,41 @@ struct Cut {
     friend bool operator==(const Cut&, const Cut&) = default;
 };
 
-/// A place with work, and its amount.
+/// A point, and the amount of work there.
 template <class Scalar>
 struct WeightedPoint {
     Vector3<Scalar> at;  ///< a min corner [m]
-    double weight = 0;   ///< in any unit, 0 or more
+    double weight = 0;   ///< work in any unit, 0 or more
 };
 
-/// Returns the box around both corners. It contains all points by which pairs of the box are owned, even if the box
-/// is inverted.
+/// Returns the box around both corners, also of an inverted box. It contains the pairPoint() of each pair of the box.
 template <class Scalar>
 [[nodiscard]] Aabb<Scalar> hullOf(const Aabb<Scalar>& box) noexcept {
     return {box.min().cwiseMin(box.max()), box.min().cwiseMax(box.max())};
 }
 
-/// Returns the point that decides which rank owns the pair of two overlapping boxes. It lies in the hull of each.
+/// Returns the point that decides which rank owns the pair of two overlapping boxes. Both hulls contain the point.
 template <class Scalar>
 [[nodiscard]] Vector3<Scalar> pairPoint(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
     return a.min().cwiseMax(b.min());
 }
 
-/// Assigns each part of space to a rank.
+/// Assigns each region of space to a rank.
 template <class Scalar>
 class HASHPHASE_DISTRIBUTED_TEMPLATE_EXPORT Partition {
 public:
-    /// One rank, which owns all of space.
+    /// Makes one region, all of space, for one rank.
     Partition() = default;
 
-    /// Takes the cuts in the order of cuts(), one fewer than ranks. Throws std::invalid_argument if a cut is NaN or
-    /// its axis is above 2.
+    /// Takes the cuts in the order of cuts(): n - 1 cuts for n ranks. Throws std::invalid_argument if a cut is at NaN
+    /// or its axis is above 2.
     explicit Partition(std::span<const Cut<Scalar>> cuts);
 
-    /// Cuts space so that each of `ranks` gets about the same weight: across the axis along which points are spread
-    /// farthest, at the point that shares the weight best. Ignores points with a NaN. Keeps the axes of `last`, if it
-    /// has as many ranks, unless another axis is clearly longer: fewer objects change ranks. Equal points in equal
-    /// order give equal results. Asserted: `ranks` is 1 or more. Cost: O(points * log(points) * log(ranks)).
+    /// Cuts space so that each rank gets about the same weight. Each cut crosses the axis with the largest spread of
+    /// points, where it divides the weight best. Ignores points with a NaN. If `last` has the same number of ranks,
+    /// keeps its axes, unless the spread along another axis is clearly larger: fewer objects change ranks. Equal
+    /// points in equal order give equal results. Asserted: `ranks` is 1 or more.
+    /// Cost: O(points * log(points) * log(ranks)).
     [[nodiscard]] static Partition balanced(std::uint32_t ranks,
                                             std::span<const WeightedPoint<Scalar>> points,
                                             const Partition* last = nullptr);
@@ -83,12 +83,12 @@ public:
     /// Returns the rank whose region contains the point [m]. A NaN counts as above every cut. Cost: O(log ranks).
     [[nodiscard]] std::uint32_t rankOf(const Vector3<Scalar>& point) const noexcept;
 
-    /// Returns the region of a rank [m]: points with min() <= point < max(). Empty if a cut lies outside the region
-    /// that it divides.
+    /// Returns the region of a rank [m]: points with min() <= point < max(). A cut outside the region that it divides
+    /// makes an empty region.
     [[nodiscard]] Aabb<Scalar> region(std::uint32_t rank) const noexcept;
 
-    /// Calls visit(rank), ascending, for each rank whose region the hull of the box touches; for none with a NaN.
-    /// Cost: O(ranks visited * log ranks).
+    /// Calls visit(rank) in ascending order for each rank whose region touches the hull of the box. A box with a NaN
+    /// has no ranks. Cost: O(ranks visited * log ranks).
     template <class Visit>
     void forEachRank(const Aabb<Scalar>& box, const Visit& visit) const {
         const Aabb<Scalar> hull = hullOf(box);
@@ -103,8 +103,8 @@ public:
         }
     }
 
-    /// Calls visit(rank), ascending, for each rank whose closed region has a key: region.key(box) >= 0, as for a
-    /// RayRegion. Cost: as forEachRank().
+    /// Calls visit(rank) in ascending order for each rank whose region, as a closed box, has region.key(box) >= 0.
+    /// `region` is a query region, such as RayRegion. Cost: as forEachRank().
     template <class Region, class Visit>
     void forEachRankWithKey(const Region& region, const Visit& visit) const {
         const auto sides = [&](const Aabb<Scalar>& box, const Cut<Scalar>& cut) {
@@ -115,8 +115,8 @@ public:
         }
     }
 
-    /// The cuts from the root of the tree: each cut, then those below it, then those above it. The first half of the
-    /// ranks is below; of an odd number, the smaller half.
+    /// Returns the cuts from the root of the tree: each cut, then the cuts below it, then the cuts above it. A cut
+    /// between n ranks has the first n / 2 ranks (rounded down) below it.
     [[nodiscard]] std::span<const Cut<Scalar>> cuts() const noexcept { return cuts_; }
 
     friend bool operator==(const Partition&, const Partition&) = default;
@@ -135,7 +135,7 @@ private:
         return box;
     }
 
-    // Visits the ranks from `first` to `last` - 1; cuts_[node] lies between them.
+    // Visits the ranks from `first` to `last` - 1, which cuts_[node] divides.
     template <class Sides, class Visit>
     void visitNode(std::uint32_t first, std::uint32_t last, std::size_t node,
                    const Aabb<Scalar>& region, const Sides& sides, const Visit& visit) const {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Queries to all ranks: objects that touch a box, lie within a distance, or are met by a ray, wherever they live.
+// Queries to all ranks: find objects that touch a box, lie within a distance, or are hit by a ray, on any rank.
 //
 //     for (const Parcel& parcel : asked.pack(grid, questions)) { send(parcel.rank, parcel.bytes); }
 //     for (const Parcel& parcel : asked.answer(grid, received)) { send(parcel.rank, parcel.bytes); }
 //     const Answers<float> answers = asked.finish(received);
 //
 // Transport  Your program carries the parcels, as for RankGrid.
-// Frame      By all ranks together, even without a question, after RankGrid::finish() and before the next change
-//            (asserted).
-// Result     Does not depend on the number of ranks.
+// Frame      All ranks call pack(), answer() and finish(), even without a question, after RankGrid::finish() and
+//            before the next change (asserted).
+// Result     Answers do not depend on the number of ranks.
 // Failure    answer() and finish() throw RankError, as RankGrid::finish() does.
 // Bad data   A question with a NaN finds nothing.
 
@@ -24,19 +24,19 @@
 
 namespace hashphase {
 
-/// A query, and the most objects that it wants. Make it by box(), sphere() or ray().
+/// A query, and the maximum number of objects to find. Make it with box(), sphere() or ray().
 template <class Scalar>
 struct Question {
     enum class Shape : std::uint8_t { box, sphere, ray };
 
     Shape shape = Shape::box;
-    Aabb<Scalar> extent;  ///< the box; or the box that moves along the ray, relative to it [m]
-    Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< beginning of a ray, centre of a ball [m]
+    Aabb<Scalar> extent;  ///< the box; for a ray, the moving box relative to the ray's point [m]
+    Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< start of a ray, centre of a sphere [m]
     Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< end of a ray [m]
-    Scalar radius = 0;                               ///< of a ball [m]
-    std::uint32_t most = ~std::uint32_t{0};  ///< keeps at most this many, with the smallest keys
+    Scalar radius = 0;                               ///< of a sphere [m]
+    std::uint32_t most = ~std::uint32_t{0};  ///< at most this number of objects, by smallest keys
 
-    /// Finds as BoxRegion.
+    /// Finds the objects in a BoxRegion.
     [[nodiscard]] static Question box(const Aabb<Scalar>& box,
                                       std::uint32_t most = ~std::uint32_t{0}) {
         Question question;
@@ -44,7 +44,7 @@ struct Question {
         question.most = most;
         return question;
     }
-    /// Finds as SphereRegion. With `most`, finds the nearest objects.
+    /// Finds the objects in a SphereRegion. With `most`, finds the nearest objects.
     [[nodiscard]] static Question sphere(const Vector3<Scalar>& center, Scalar radius,
                                          std::uint32_t most = ~std::uint32_t{0}) {
         Question question;
@@ -54,7 +54,7 @@ struct Question {
         question.most = most;
         return question;
     }
-    /// Finds as RayRegion. With `most` 1, finds the first box that the ray enters.
+    /// Finds the objects in a RayRegion. With `most` 1, finds the first box that the ray enters.
     [[nodiscard]] static Question ray(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
                                       std::uint32_t most = ~std::uint32_t{0},
                                       const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(),
@@ -69,13 +69,13 @@ struct Question {
     }
 };
 
-/// An object found.
+/// An object that was found.
 template <class Scalar>
 struct FoundObject {
     Scalar key =
-        0;  ///< as the region defines it: 0, a squared distance [m^2], or a fraction of the ray
+        0;  ///< box: 0; sphere: squared distance [m^2]; ray: fraction of the ray, 0 at its start
     GlobalId object;
-    std::uint32_t home = 0;  ///< the rank on which it lives
+    std::uint32_t home = 0;  ///< the rank that owns it
 
     friend constexpr auto operator<=>(const FoundObject&, const FoundObject&) = default;
 };
@@ -85,7 +85,7 @@ template <class Scalar>
 struct Answers {
     std::span<const FoundObject<Scalar>> found;
     std::span<const std::size_t>
-        begins;  ///< of each answer in `found`, and the end of the last one
+        begins;  ///< where each answer begins in `found`, and where the last ends
 
     /// Returns the answer to question i: each object once, sorted by key, then by id.
     [[nodiscard]] std::span<const FoundObject<Scalar>> of(std::size_t i) const noexcept {
@@ -93,20 +93,20 @@ struct Answers {
     }
 };
 
-/// Questions of one rank, and its answers to others. Keeps its memory.
+/// Questions of one rank, and its answers to other ranks. Reuses its memory.
 template <class Scalar>
 class HASHPHASE_DISTRIBUTED_TEMPLATE_EXPORT RankQuestions {
 public:
-    /// Returns parcels of questions for other ranks, valid until the next call, and answers from this rank's own
-    /// grid. Throws std::length_error beyond 2^32 - 1 questions. Cost: O(log ranks) for each rank concerned, and the
-    /// queries here.
+    /// Returns parcels of questions for other ranks, valid until the next pack() or answer(). Also answers the
+    /// questions from this rank's grid. Throws std::length_error beyond 2^32 - 1 questions. Cost: O(log ranks) for
+    /// each rank asked, plus the queries on this rank.
     std::span<const Parcel> pack(const RankGrid<Scalar>& grid,
                                  std::span<const Question<Scalar>> questions);
 
-    /// Answers the questions of other ranks. Valid until the next call. Cost: a query for each question.
+    /// Returns answers for other ranks, valid until the next pack() or answer(). Cost: a query for each question.
     std::span<const Parcel> answer(const RankGrid<Scalar>& grid, std::span<const Parcel> received);
 
-    /// Joins the answers of all ranks. Cost: O(found * log(found)).
+    /// Returns the answers of all ranks. Cost: O(n log n) for n found objects.
     Answers<Scalar> finish(std::span<const Parcel> received);
 
 private:

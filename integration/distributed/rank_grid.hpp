@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// One rank's part of a grid over many ranks: its objects, ghosts of others that reach in, and the pairs that it owns.
+// One rank's part of a grid over many ranks: its objects and pairs, and ghosts, copies of other ranks' objects.
 //
 //     for (const Parcel& parcel : grid.pack()) { send(parcel.rank, parcel.bytes); }
 //     const RankChanges changes = grid.finish(received);
 //
-// Transport  Your program carries the parcels between ranks. hashphase::mpi does so by MPI.
-// Objects    have a GlobalId on all ranks, and a ProxyId here, for your data. An object lives on the rank whose
-//            region contains its min corner. Its payload, bytes of yours, travels with it.
-// Ghosts     Each other rank whose region the box touches has a ghost: box, groups and payload. Only changes are
-//            sent.
-// Pairs      Over all ranks, births and deaths are those in one grid, each once. A pair that moves to another rank is
-//            neither born nor dead.
-// Frame      Changes are visible here at once, on other ranks after finish(). Ask other ranks before the next change.
-// Result     Equal calls give equal results: parcels are taken in the order of their ranks.
-// Failure    If memory runs out in add(), move(), remove() or payload(), nothing has happened. finish() throws
-//            RankError, which names the sender, for an impossible parcel. Then, or if memory runs out in pack() or
-//            finish(), this grid is unusable.
-// Threads    Queries of grid() may run on several threads. All else needs this object for itself.
-// Misuse     Asserted, without effect: pack() and finish() in another order, changes between them, stale ids, and
-//            ghosts instead of objects.
+// Transport  Your program carries the parcels between ranks. hashphase::mpi does it with MPI.
+// Objects    have a GlobalId on all ranks, and a ProxyId on this rank, for your data. finish() moves each object to
+//            its home, which owns it: the rank whose region contains its min corner. The payload, bytes of yours,
+//            moves with the object.
+// Ghosts     Each other rank whose region the object's box touches has a ghost: box, groups and payload. pack() sends
+//            only changes.
+// Pairs      All ranks together report the births and deaths of one grid, each once. If a pair moves to another rank,
+//            no rank reports a birth or death.
+// Frame      Changes are visible on this rank at once, on other ranks after finish(). Ask other ranks (questions.hpp)
+//            before the next change.
+// Result     Equal calls give equal results: finish() reads parcels in the order of ranks.
+// Failure    If memory runs out in add(), move(), remove() or payload(), nothing changes. For an invalid parcel,
+//            finish() throws RankError, which names the sending rank. After a RankError, or if memory runs out in
+//            pack() or finish(), this grid is unusable.
+// Threads    Several threads may query grid(). During any other call, no other thread may use this object.
+// Misuse     Asserted, without effect: pack() and finish() in the wrong order, changes between pack() and finish(),
+//            stale ids, and ghosts passed as objects.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/byte_stream.hpp>
@@ -56,42 +58,42 @@ public:
 /// Settings, equal on all ranks.
 struct RankGridConfig {
     GridConfig grid;
-    /// Bytes of yours that travel with each object, and with its ghosts. Valid: 0 to 65,536.
+    /// Bytes of payload in each object and ghost. Valid: 0 to 65,536.
     std::uint32_t payloadBytes = 0;
 
     friend bool operator==(const RankGridConfig&, const RankGridConfig&) = default;
 };
 
-/// Bytes from one rank for another. Valid until the next pack().
+/// Bytes from one rank to another. Valid until the next pack().
 struct Parcel {
-    std::uint32_t rank = 0;  ///< the receiver, or the sender
+    std::uint32_t rank = 0;  ///< to send: the receiving rank; received: the sending rank
     std::span<const std::byte> bytes;
 };
 
-/// An object that has moved between ranks.
+/// An object that has moved from one rank to another.
 struct Migration {
     GlobalId object;
-    ProxyId proxy;           ///< on this rank; of a departed object its ghost, or stale
-    std::uint32_t rank = 0;  ///< where an arrived object came from, or a departed one went
+    ProxyId proxy;           ///< on this rank; departed object: its ghost, or a stale id
+    std::uint32_t rank = 0;  ///< arrived object: its old home; departed object: its new home
 };
 
 /// The changes of a frame. Valid until the next finish().
 struct RankChanges {
-    /// Pairs that this rank reports, by its ProxyIds, sorted. globalPair() also returns the ids of departed objects.
+    /// Births and deaths that this rank reports, by its ProxyIds, sorted. globalPair() also takes departed objects.
     PairChanges pairs;
-    /// `arrived` is sorted by rank; of each rank it has the order of that rank's `departed`.
+    /// Objects that arrived, sorted by old home, then in the order of `departed` on the old home.
     std::span<const Migration> arrived;
     std::span<const Migration> departed;
 };
 
 /// Cost of the last frame on this rank.
 struct RankCost {
-    PairCost pairs;                 ///< of the grid here, ghosts included
-    std::uint64_t ghosts = 0;       ///< here
-    std::uint64_t entriesSent = 0;  ///< changes of an object, counted for each receiver
+    PairCost pairs;                 ///< of this rank's grid, ghosts included
+    std::uint64_t ghosts = 0;       ///< on this rank
+    std::uint64_t entriesSent = 0;  ///< changes of an object, once for each receiver
     std::uint64_t bytesSent = 0;
     std::uint64_t parcelsSent = 0;
-    /// Amount of work, in units of a box test: boxes filed, boxes tested and pairs.
+    /// Estimated work: boxes filed, boxes tested and pairs. Unit: one box test.
     double load = 0;
 };
 
@@ -101,20 +103,20 @@ class HASHPHASE_DISTRIBUTED_TEMPLATE_EXPORT RankGrid {
 public:
     using Box = Aabb<Scalar>;
 
-    /// Makes the part of `rank`. Throws std::invalid_argument if the configuration is bad. Asserted: `rank` is less
-    /// than partition.rankCount().
+    /// Makes the part of `rank`. Throws std::invalid_argument if the configuration is invalid. Asserted: `rank` is
+    /// less than partition.rankCount().
     RankGrid(std::uint32_t rank, const Partition<Scalar>& partition,
              const RankGridConfig& config = {});
 
     // --- Objects ---------------------------------------------------------------------------------
 
-    /// Adds an object here, wherever its box is; the next finish() moves it to its rank. Its payload is zeros.
-    /// `groups` are as in Grid::setGroups(), and stay. Throws std::invalid_argument if this rank has an object or
-    /// ghost with this id; finish() throws if two such objects meet later. Throws std::length_error beyond 2^28
-    /// proxies. Cost: O(1) amortised.
+    /// Adds an object on this rank, wherever its box is. The next finish() moves the object to its home. Its payload
+    /// is zeros. `groups` are as in Grid::setGroups(), and cannot change later. Throws std::invalid_argument if this
+    /// rank has an object or ghost with this id. If objects with equal ids meet later, finish() throws RankError.
+    /// Throws std::length_error beyond 2^28 proxies. Cost: O(1) amortised.
     ProxyId add(GlobalId object, const Box& box, const ProxyGroups& groups = {});
 
-    /// Sets the box of an object that lives here. Cost: O(1).
+    /// Sets the box of an object that this rank owns. Cost: O(1).
     void move(ProxyId id, const Box& box) {
         if (!canChange(id) || isSameBits(grid_.box(id), box)) {
             return;
@@ -125,38 +127,38 @@ public:
         grid_.move(id, box);
     }
 
-    /// Removes an object that lives here. Cost: O(1).
+    /// Removes an object that this rank owns. Cost: O(1).
     void remove(ProxyId id);
 
-    /// Returns the payload of an object that lives here, for writing, until the next add() or finish(). pack() sends
-    /// written bytes to its ghosts and its new rank. Call it again in each frame in which you write. Cost: O(1).
+    /// Returns the payload of an object that this rank owns, for writing. The span is valid until the next add() or
+    /// finish(). pack() sends the bytes to ghosts and to a new home. Call payload() again in each frame in which you
+    /// write, or pack() may not send the bytes. Cost: O(1).
     [[nodiscard]] std::span<std::byte> payload(ProxyId id);
 
-    /// Returns the payload of an object or ghost, for reading; a ghost's is as of the last finish(). Empty for a
-    /// stale id.
+    /// Returns the payload of an object or ghost, for reading. finish() updates ghosts. Empty for a stale id.
     [[nodiscard]] std::span<const std::byte> readPayload(ProxyId id) const noexcept;
 
-    /// Returns whether an object with this id lives here; false for ghosts and stale ids.
+    /// Returns whether this rank owns the object; false for ghosts and stale ids.
     [[nodiscard]] bool isOwned(ProxyId id) const noexcept {
         return grid_.contains(id) && (marks_[id.index] & kOwned) != 0;
     }
 
-    /// Returns the rank on which an object or ghost lives. Asserted: the id is of this grid.
+    /// Returns the home of an object, or of a ghost's object. Asserted: the id is valid in this grid.
     [[nodiscard]] std::uint32_t homeOf(ProxyId id) const;
 
-    /// Returns the object's id on all ranks, until the next finish() also for proxies that the last frame removed.
-    /// Asserted: the proxy is one of these; else returns id 0.
+    /// Returns the GlobalId of an object or ghost. Until the next finish(), also takes proxies that the last frame
+    /// removed. For any other proxy, returns id 0 (asserted).
     [[nodiscard]] GlobalId globalId(ProxyId id) const;
 
-    /// Returns the objects of a pair.
+    /// Returns the GlobalIds of a pair.
     [[nodiscard]] GlobalPair globalPair(const ProxyPair& pair) const {
         return hashphase::globalPair(globalId(pair.first), globalId(pair.second));
     }
 
-    /// Returns the object or ghost with this id; null if there is none here. Cost: O(1).
+    /// Returns the object or ghost with this id; null if this rank has neither. Cost: O(1).
     [[nodiscard]] ProxyId find(GlobalId object) const noexcept;
 
-    /// Calls visit(ProxyId, const Box&) for each object that lives here, by ascending index. visit() may move and
+    /// Calls visit(ProxyId, const Box&) for each object that this rank owns, by ascending index. visit() may move and
     /// remove objects. Cost: O(objects and ghosts).
     template <class Visit>
     void forEachOwned(const Visit& visit) const {
@@ -167,25 +169,25 @@ public:
         });
     }
 
-    /// Number of objects that live here.
+    /// Number of objects that this rank owns.
     [[nodiscard]] std::size_t size() const noexcept { return ownedCount_; }
     [[nodiscard]] std::size_t ghostCount() const noexcept { return grid_.size() - ownedCount_; }
 
-    /// Objects and ghosts, for queries: after finish(), all that touch this rank's region.
+    /// The grid of objects and ghosts, for queries. After finish(), it has all that touch this rank's region.
     [[nodiscard]] const Grid<Scalar>& grid() const noexcept { return grid_; }
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Takes another partition from the next pack() on, on all ranks in the same frame. Asserted: equally many ranks,
-    /// and not between pack() and finish(). Cost: O(objects), in the next pack().
+    /// Uses another partition from the next pack() on. Call it on all ranks in the same frame. Asserted: the number
+    /// of ranks is unchanged; not between pack() and finish(). Cost: O(objects), in the next pack().
     void setPartition(const Partition<Scalar>& partition);
 
-    /// Ends the changes of this frame. Returns the parcels for other ranks, sorted by rank. Cost: follows changes at
-    /// the region's border.
+    /// Ends the changes of this frame. Returns the parcels for other ranks, sorted by rank. Cost: grows with added
+    /// and removed objects, and with changed objects at the region's border.
     std::span<const Parcel> pack();
 
-    /// Ends the frame, with all of its parcels from other ranks, in any order. Throws RankError. Cost:
-    /// Pairs::update(), and the parcels.
+    /// Ends the frame. Pass all parcels from other ranks for this frame, in any order. Throws RankError. Cost: as
+    /// Pairs::update(), plus reading the parcels.
     RankChanges finish(std::span<const Parcel> received, ParallelFor parallelFor = serialFor);
 
     // --- The whole -------------------------------------------------------------------------------
@@ -193,14 +195,14 @@ public:
     /// Number of frames that finish() has ended.
     [[nodiscard]] std::uint64_t frame() const noexcept { return frame_; }
 
-    /// Returns whether objects, boxes and partition are as at the last finish(). False between pack() and finish().
-    /// Cost: O(1).
+    /// Returns whether objects, boxes and partition are unchanged since the last finish(). False between pack() and
+    /// finish(). Cost: O(1).
     [[nodiscard]] bool isUpToDate() const noexcept {
         return !isPacked_ && !isPartitionNew_ && pairs_.isUpToDate();
     }
 
-    /// Calls visit(const ProxyPair&) for each pair that this rank owns, sorted by its ProxyIds. One or both may be
-    /// ghosts. Asserted: isUpToDate(). Cost: Pairs::collect().
+    /// Calls visit(const ProxyPair&) for each pair that this rank owns, sorted by ProxyIds. One or both proxies may
+    /// be ghosts. Asserted: isUpToDate(). Cost: as Pairs::collect().
     template <class Visit>
     void forEachPair(const Visit& visit) const {
         std::vector<ProxyPair> pairs;
@@ -210,16 +212,16 @@ public:
         }
     }
 
-    /// Appends these pairs by the ids of their objects, sorted. Cost and assertion: as forEachPair().
+    /// Appends the pairs that this rank owns, by GlobalIds, sorted. Cost and assertion: as forEachPair().
     void collect(std::vector<GlobalPair>& pairs) const;
 
-    /// Returns the sum of these pairs. Cost and assertion: as forEachPair().
+    /// Returns the sum of the pairs that this rank owns. Cost and assertion: as forEachPair().
     [[nodiscard]] PairSum pairSum() const;
 
     [[nodiscard]] const RankCost& lastCost() const noexcept { return cost_; }
 
-    /// Returns min corners of up to `count` objects that live here, for Partition::balanced(). Weights estimate their
-    /// work; the sum is `load`, by default lastCost().load. Cost: `count` box queries.
+    /// Returns min corners of up to `count` objects that this rank owns, for Partition::balanced(). Weights estimate
+    /// the work. Their sum is `load`, by default lastCost().load, but at least 1. Cost: 2 * `count` box queries.
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count) const;
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count,
                                                                 double load) const;
@@ -229,20 +231,20 @@ public:
     [[nodiscard]] const RankGridConfig& config() const noexcept { return config_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Returns the broken invariant in a sentence; empty if all hold. Call it after finish().
+    /// Returns a broken invariant in a sentence; empty if all hold. Call it after finish().
     [[nodiscard]] std::string validate() const;
 
 private:
-    // What is known of a proxy, by ProxyId::index.
+    // Marks of a proxy, by ProxyId::index.
     enum Mark : std::uint16_t {
-        kOwned = 1,                // lives here
-        kShared = 2,               // did not lie wholly in this rank's region at the last finish()
+        kOwned = 1,                // this rank owns it
+        kShared = 2,               // was not wholly in this rank's region at the last finish()
         kTouched = 4,              // is in touched_
-        kHasBefore = 8,            // befores_ has its box at the last finish(); else the box now
-        kNew = 16,                 // was not here at the last finish()
-        kBorn = 32,                // was on no rank then
-        kRemovedHere = 64,         // is not here any more
-        kRemovedEverywhere = 128,  // is on no rank any more
+        kHasBefore = 8,            // befores_ has its box at the last finish()
+        kNew = 16,                 // was not on this rank at the last finish()
+        kBorn = 32,                // was on no rank at the last finish()
+        kRemovedHere = 64,         // was removed from this rank
+        kRemovedEverywhere = 128,  // was removed from all ranks
         kPayload = 256,            // its payload has changed
         kStaysHere = 512,          // its new box touches this rank's region
     };
@@ -259,7 +261,7 @@ private:
     };
     [[nodiscard]] Entry readEntry(detail::ByteReader& reader) const;
 
-    /// Without branches: at the border they cannot be predicted.
+    /// Has no branches: at the border they are unpredictable.
     [[nodiscard]] bool liesWithin(const Box& box) const noexcept {
         unsigned isOutside = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -302,7 +304,7 @@ private:
     void addEntry(std::uint32_t rank, std::uint32_t index, unsigned kind);
     void makeRoom(std::uint32_t index);
 
-    // finish(), in order.
+    // Steps of finish().
     void readParcels(std::span<const Parcel> received);
     void readParcel(const Parcel& parcel);
     void takeEntries();
@@ -325,24 +327,24 @@ private:
     RankGridConfig config_;
     Partition<Scalar> partition_;
     Partition<Scalar> lastPartition_;  // at the last finish()
-    Box region_;                       // of partition_
+    Box region_;                       // this rank's region of partition_
     Grid<Scalar> grid_;
     Pairs<Scalar> pairs_;
 
-    // By ProxyId::index.
+    // Indexed by ProxyId::index.
     std::vector<std::uint16_t> marks_;
     std::vector<GlobalId> globalIds_;
     std::vector<Box> befores_;
-    // Of a ghost its rank; of a proxy that left this rank its index in removedHere_.
+    // The home; for a proxy removed from this rank, its index in removedHere_.
     std::vector<std::uint32_t> homes_;
     std::vector<std::byte> payloads_;
-    // Ids of all objects and ghosts here, numbered, and their proxies by that number.
+    // The index of a GlobalId in knownIds_ is the index of its proxy in knownProxies_.
     detail::FlatSet knownIds_;
     std::vector<ProxyId> knownProxies_;
     std::size_t ownedCount_ = 0;
 
-    // Of this frame.
-    std::vector<std::uint32_t> touched_;  // objects, in finish() also ghosts, that have changed
+    // Data of this frame.
+    std::vector<std::uint32_t> touched_;  // changed objects; in finish() also changed ghosts
     struct RemovedProxy {
         ProxyId id;
         Box now;
@@ -351,11 +353,11 @@ private:
     std::vector<detail::ByteWriter> writers_;  // by rank
     std::vector<std::uint32_t> entryCounts_;   // by rank
     std::vector<std::uint32_t> destinations_;  // ranks whose writer is not empty
-    std::vector<std::uint32_t> ranksBefore_;   // that an object touched before, and now
+    std::vector<std::uint32_t> ranksBefore_;   // ranks that an object touched at the last finish()
     std::vector<std::uint32_t> ranksNow_;
     std::vector<Parcel> parcels_;
     std::vector<std::pair<Parcel, Entry>> entries_;  // received
-    // Ids of proxies that the last frame removed here, sorted, and of this frame.
+    // Proxies removed on this rank: formerNames_ in the last frame (sorted), nextFormerNames_ in this frame.
     struct FormerName {
         ProxyId id;
         GlobalId object;

@@ -1,35 +1,36 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The effects of a declaration (scene_effects.hpp) in a Bullet world. Bullet computes only declared effects.
+// Applies a declaration (scene_effects.hpp) to a Bullet world. Bullet then computes only the declared effects.
 //
 //     hashphase::WorldConfigurator configurator(world);      // integration/bullet/world_effects.hpp
 //     configurator.apply(hashphase::worldEffectsOf(scene));
 //     configurator.step(timeStep);                           // or world.stepSimulation()
 //
-//     effect       setting in Bullet                         lost without the effect
-//     motion       none: step() steps the world              motion. step() only finds declared pairs of bodies as
-//                                                            they are. Call updateAabbs() for bodies that you move,
-//                                                            not stepSimulation(): it moves bodies with a velocity
-//     terrain      none: the ground is your static body      the ground: do not add it
+//     effect       setting in Bullet                      lost without the effect
+//     motion       none: step() moves bodies              motion: step() then only finds pairs, if declared. After
+//                                                         you move bodies, call updateAabbs(). stepSimulation()
+//                                                         would move bodies that have a velocity
+//     terrain      none: the ground is your static body   the ground: leave out its body
 //                  (static_triangles.hpp)
-//     pairs        the world's overlap filter                contacts, ghosts' lists, response and sweep
-//     response     each object's answer to contacts          bodies fall through each other; contacts are reported
-//     sweep        m_useContinuous; CCD thresholds of        bodies that move by more than half their width in a
-//                  bodies fast for their size                step may pass thin ones
-//     sleeping     deactivation, linear thresholds           nothing: resting bodies are still computed
-//     rotation     angular factors                           bodies keep their orientation
-//     friction     all frictions                             bodies slide for ever
-//     the others   none: they query                          nothing
+//     pairs        the world's overlap filter             contacts, ghosts' lists, response and sweep
+//     response     each object's answer to contacts       bodies fall through each other; contacts are reported
+//     sweep        m_useContinuous; CCD thresholds of     bodies that move by more than half their width in a step
+//                  bodies that are fast for their size    may pass through thin bodies
+//     sleeping     deactivation, linear thresholds        nothing, but Bullet also computes resting bodies
+//     rotation     angular factors                        bodies keep their orientation
+//     friction     all frictions                          bodies slide for ever
+//     all others   none: Observers query                  nothing
 //                  SpatialHashBroadphase::grid()
 //
-// Observers  know objects by ProxyId, and keep data by index. If you remove an object, call Observers::forget():
-//            another object gets its index. After an origin shift, move zones, view and interest yourself.
+// Observers  identify objects by ProxyId, and keep data by index. When you remove an object, call
+//            Observers::forget(): a new object may get its index. After an origin shift, move zones, view and
+//            interest yourself.
 // Ignored    ResponseEffect::restitution: each body has its own (WorldEffects::restitution sets all).
-//            SweepEffect::mode: SpatialHashConfig::sweep sets it. SleepingEffect::framesBeforeSleep: bodies sleep
-//            after gDeactivationTime, 2 s.
-// Errors     finite motion.bounds and sleeping.interestRadius. Put static planes at the bounds, and deactivate far
-//            bodies.
+//            SweepEffect::mode: set SpatialHashConfig::sweep instead. SleepingEffect::framesBeforeSleep: bodies fall
+//            asleep after gDeactivationTime, 2 s.
+// Errors     A finite motion.bounds or sleeping.interestRadius is an error. Instead, put static planes at the bounds,
+//            and deactivate far bodies.
 
 #include <broadphase/core/raise.hpp>
 #include <integration/bullet/world_effects.hpp>
@@ -42,7 +43,7 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Returns in a sentence why Bullet cannot run the declaration; empty if it can.
+/// Returns the reason why Bullet cannot run the declaration, in a sentence. Empty if Bullet can.
 [[nodiscard]] inline std::string bulletEffectsError(const SceneEffects& effects) {
     const std::string error = effectsError(effects);
     if (!error.empty()) {
@@ -61,8 +62,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
     return {};
 }
 
-/// Returns the declaration in Bullet's terms. Bodies keep CCD thresholds of their own if you reset() `fastFrom` of
-/// the result, and sleeping thresholds with SleepingEffect::slowBelow 0. Throws std::invalid_argument with
+/// Returns the declaration as WorldEffects. To keep the bodies' own CCD thresholds, reset() `fastFrom` of the result.
+/// To keep their sleeping thresholds, set SleepingEffect::slowBelow to 0. Throws std::invalid_argument with
 /// bulletEffectsError().
 [[nodiscard]] inline WorldEffects worldEffectsOf(const SceneEffects& effects) {
     if (const std::string error = bulletEffectsError(effects); !error.empty()) {

@@ -12,22 +12,22 @@
 
 namespace hashphase {
 
-/// What a scene can declare. The first eight are its physics; the other six only look at it.
+/// What a scene can declare. The first eight effects are its physics. The other six only query the scene.
 enum class Effect : std::uint8_t {
     motion,        ///< bodies move with their velocities
     terrain,       ///< bodies stand on the ground
-    pairs,         ///< births and deaths of overlapping pairs
+    pairs,         ///< reports births and deaths of overlapping pairs
     response,      ///< touching bodies bounce
-    sweep,         ///< fast bodies hit bodies on their way
-    sleeping,      ///< slow or far bodies stand still
-    rotation,      ///< bodies turn; only under Bullet
-    friction,      ///< touching bodies rub; only under Bullet
-    picking,       ///< bodies under the pointer
-    boxSelection,  ///< bodies in a dragged rectangle
-    culling,       ///< bodies that a camera sees
-    proximity,     ///< agents look at their neighbours
-    zones,         ///< proxies in zones of interest
-    radar,         ///< counts of proxies in coarse cells
+    sweep,         ///< fast bodies hit bodies on their paths
+    sleeping,      ///< slow bodies, and bodies far from the player, stand still
+    rotation,      ///< bodies rotate; only in Bullet
+    friction,      ///< friction between touching bodies; only in Bullet
+    picking,       ///< finds bodies under the pointer
+    boxSelection,  ///< finds bodies in a dragged rectangle
+    culling,       ///< finds bodies that a camera sees
+    proximity,     ///< agents take the rarest colour around them
+    zones,         ///< finds proxies in zones of interest
+    radar,         ///< counts proxies in coarse cells
 };
 
 /// Every effect, in the order of Effect.
@@ -37,7 +37,7 @@ inline constexpr std::array kAllEffects{
     Effect::culling,  Effect::proximity, Effect::zones,    Effect::radar,
 };
 
-/// Returns the name as in code and files, such as "boxSelection". Empty for a value that is no Effect.
+/// Returns the enumerator's name, such as "boxSelection". Empty for any other value.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string_view nameOf(Effect effect) noexcept;
 
 /// A set of effects: a value of two bytes, empty by default. Each operation costs O(1).
@@ -57,7 +57,7 @@ public:
         return set;
     }
 
-    /// Inserting a present effect, or erasing an absent one, changes nothing.
+    /// Inserting a present effect, or erasing an absent effect, changes nothing.
     constexpr void insert(Effect effect) noexcept { bits_ |= bitOf(effect); }
     constexpr void erase(Effect effect) noexcept {
         bits_ &= static_cast<std::uint16_t>(~bitOf(effect));
@@ -65,7 +65,7 @@ public:
     [[nodiscard]] constexpr bool contains(Effect effect) const noexcept {
         return (bits_ & bitOf(effect)) != 0;
     }
-    /// Returns whether the two sets have an effect in common.
+    /// Returns whether the two sets have any effect in common.
     [[nodiscard]] constexpr bool containsAny(EffectSet others) const noexcept {
         return (bits_ & others.bits_) != 0;
     }

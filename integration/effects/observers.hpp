@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The effects of a scene that only look at it: culling, proximity, zones and radar in each frame, picking and box
-// selection on request. They work over any grid, such as a Simulation's or SpatialHashBroadphase::grid().
+// Runs the effects that only query a scene: culling, proximity, zones and radar in each frame, picking and box
+// selection on request. Works over any grid, such as a Simulation's or SpatialHashBroadphase::grid().
 //
-// Undeclared  An undeclared effect has no phase, no table and no cost. A call that needs it throws UndeclaredEffect.
-// Frame       Set a changed view, interest or zones, then call observe() once.
-// Exact       A result depends only on the boxes and the effect's own settings.
-// Late        An effect may look in every n-th frame only. Between, it repeats an earlier answer; cost() counts
-//             these.
-// Threads     Everything reads the grid, as queries do, and needs this object for itself.
-// Removed     Call forget() for each removed proxy. (A Simulation does.)
-// Failure     std::bad_alloc is passed on. This frame then lacks some answers; the next frames work.
+// Undeclared  An undeclared effect has no phase, no table and no cost. A call that needs an undeclared effect throws
+//             UndeclaredEffect.
+// Frame       Set the view, interest or zones if they changed, then call observe() once.
+// Exact       The result of an effect depends only on the boxes and the effect's settings.
+// Late        An effect may be declared to run only in every n-th frame. In between, its earlier results stay; cost()
+//             counts late results.
+// Threads     Calls are queries of the grid. No other thread may use this object meanwhile.
+// Removed     Call forget() for each removed proxy. (A Simulation does so.)
+// Failure     std::bad_alloc is passed on. Some results of that frame are missing. The next frames work.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -38,7 +39,7 @@
 
 namespace hashphase {
 
-/// A grid, and the effects in which each proxy takes part: by default in all.
+/// A grid, and the effects in which each proxy takes part: by default all.
 template <class Scalar>
 struct ObservedScene {
     const Grid<Scalar>& grid;
@@ -49,10 +50,10 @@ struct ObservedScene {
     /// By ProxyId::index: the proxy's group in the radar. Beyond the end, group 0.
     std::span<const std::uint32_t> groups = {};
 
-    /// Effects in which some proxy takes part. The others are not run.
+    /// Effects in which at least one proxy takes part. Other effects do not run.
     EffectSet present = EffectSet::all();
 
-    /// Effects in which every proxy takes part. They run faster: proxies are not asked.
+    /// Effects in which every proxy takes part. These run faster: they do not check each proxy.
     EffectSet common = {};
 
     [[nodiscard]] bool allTakePartIn(Effect effect) const noexcept {
@@ -63,7 +64,7 @@ struct ObservedScene {
     }
 };
 
-/// Runs the effects of a declaration that look at a grid.
+/// Runs the declared effects that query a grid.
 template <class Scalar>
 class HASHPHASE_EFFECTS_TEMPLATE_EXPORT Observers {
 public:
@@ -76,41 +77,41 @@ public:
     Observers(const Observers&) = delete;
     Observers& operator=(const Observers&) = delete;
 
-    /// Changes the declaration. Frees tables of effects no longer declared; the others keep zones, colours and view.
-    /// The next frame has no late answers, except agents out of turn. Throws as the constructor, or std::bad_alloc;
-    /// then nothing has changed.
+    /// Changes the declaration. Frees tables of effects that are no longer declared. Other effects keep zones,
+    /// colours and view. The next frame has no late results, except of agents whose turn has not come. Throws as the
+    /// constructor, or std::bad_alloc. If it throws, nothing has changed.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
 
     // --- View, interest, zones and colours -------------------------------------------------------
 
-    /// Sets the camera's volume, or another one; at first all of space. Needs culling.
+    /// Sets the volume that culling searches, usually a frustum. At first it is all of space. Needs Effect::culling.
     void setView(const ConvexRegion<Scalar>& view);
 
-    /// Sets the player's place [m]. Objects far from it may be late, as declared, and the radar is around it. With
-    /// std::nullopt nothing is far, and the radar is around the origin.
+    /// Sets the position of the player [m]. Effects may find far objects late, as declared. The radar is around the
+    /// player. With std::nullopt, nothing is far, and the radar is around the origin.
     void setInterest(const std::optional<Point>& interest) { interest_ = interest; }
     [[nodiscard]] const std::optional<Point>& interest() const noexcept { return interest_; }
 
-    /// Add, set and remove zones here; observe() calls Zones::update(). Needs zones.
+    /// Add, set and remove zones here. observe() calls Zones::update(). Needs Effect::zones.
     [[nodiscard]] Zones<Scalar>& zones();
 
-    /// Sets the colour of the proxy with that index, at first 0. Needs proximity. Cost: O(1), and memory for all
-    /// lower indices.
+    /// Sets the colour of the proxy with this index, at first 0. Needs Effect::proximity. Cost: O(1), and memory for
+    /// all lower indices.
     void setColour(std::uint32_t index, std::uint32_t colour);
 
-    /// Runs one frame. `moved` [m] is how far any corner of a box may have moved since the last frame; infinite if
-    /// unknown, or if a proxy was added (Culler::look()). Returns the cost.
+    /// Runs one frame. `moved` [m] is how far any corner of a box may have moved since the last frame (see
+    /// Culler::look()). Pass infinity if it is unknown, or if a proxy was added. Returns the cost.
     const SceneCost& observe(const Scene& scene,
                              Scalar moved = std::numeric_limits<Scalar>::infinity(),
                              ParallelFor parallelFor = serialFor);
 
-    /// Forgets a removed proxy: the next proxy with its index is not visible because of it, and has colour 0.
+    /// Forgets a removed proxy, so that a new proxy with the same index does not inherit its visibility and colour.
     void forget(std::uint32_t index) noexcept;
 
-    /// Call it before another grid replaces this one, with equal indices but other generations. Proxies in a zone
-    /// enter it again, without leaving it.
+    /// Call it before another grid replaces the observed grid, with equal indices but other generations. Proxies in a
+    /// zone then enter the zone again, without leaving.
     void forgetProxies() noexcept;
 
     /// Calls `watch` with the effect's name after each phase, for a profiler. An empty function ends the calls.
@@ -118,35 +119,35 @@ public:
 
     // --- Results of the last frame ---------------------------------------------------------------
 
-    /// The visible set. Needs culling.
+    /// The visible set. Needs Effect::culling.
     [[nodiscard]] const Culler<Scalar>& culler() const;
 
-    /// Colours of agents by ProxyId::index; beyond the end, 0. Valid until the next frame or setColour(). Needs
-    /// proximity.
+    /// Colours of agents, indexed by ProxyId::index. Beyond the end, colours are 0. Valid until the next frame or
+    /// setColour(). Needs Effect::proximity.
     [[nodiscard]] std::span<const std::uint32_t> colours() const;
 
-    /// Events of zones. Valid until the next frame. Needs zones.
+    /// Events of zones. Valid until the next frame. Needs Effect::zones.
     [[nodiscard]] const ZoneEvents& zoneEvents() const;
 
-    /// Counts as of Radar::scan(). Valid until the next frame. Needs radar.
+    /// Counts in the order of Radar::scan(). Valid until the next frame. Needs Effect::radar.
     [[nodiscard]] std::span<const std::uint32_t> radarCounts() const;
 
-    /// Cost of the last frame, with picks and selections since the frame before.
+    /// Cost of the last observe(), and of picks and selections between it and the previous observe().
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
     // --- On request ------------------------------------------------------------------------------
 
-    /// As pickNearest(), among proxies that take part in picking. Needs picking.
+    /// As pickNearest(), among proxies that take part in picking. Needs Effect::picking.
     [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray);
     [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray,
                                       ExactTest<Scalar> test);
 
-    /// As hashphase::select(), among proxies that take part in box selection. Needs box selection.
+    /// As hashphase::select(), among proxies that take part in box selection. Needs Effect::boxSelection.
     QueryCost select(const Scene& scene, const Camera<Scalar>& camera, const Pixel& a,
                      const Pixel& b, std::vector<ProxyId>& selected,
                      Containment containment = Containment::touching);
 
-    /// Adds the bytes of all tables here, capacity included. Cost: O(zones).
+    /// Adds the bytes of all tables of this object, capacity included. Cost: O(zones).
     void addFootprint(SceneFootprint& footprint) const;
 
 private:
@@ -183,10 +184,10 @@ private:
     std::uint64_t frame_ = 0;
     EffectSet presentBefore_;
     EffectSet
-        farewell_;  // effects in which proxies took part in the last frame, and none do in this one
+        farewell_;  // effects in which proxies took part in the last frame, but no proxy does in this frame
     std::optional<Point> interest_;
     SceneCost cost_;   // of the last frame
-    SceneCost asked_;  // of picks and selections since
+    SceneCost asked_;  // of picks and selections since that frame
     std::function<void(std::string_view)> watch_;
 
     std::unique_ptr<Culling> culling_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Costs of a scene's frame as numbers, and the tables that a scene keeps. Each belongs to some effects, and is
-// exactly 0 if none of these is declared.
+// The cost of a scene's frame in numbers, and the tables that a scene keeps. Each counter and table belongs to some
+// effects. It is exactly 0 if none of these effects is declared.
 //
 //     const SceneCost& cost = simulation.advance(1.0F / 60);
 //     std::uint64_t born = cost[SceneCounter::pairsBorn];
@@ -19,7 +19,7 @@
 
 namespace hashphase {
 
-/// The effects that query a grid. A Simulation has a grid while one of them is declared.
+/// The effects that query a grid. A Simulation has a grid while any of these effects is declared.
 inline constexpr EffectSet kGridEffects{
     Effect::pairs,     Effect::picking, Effect::boxSelection, Effect::culling,
     Effect::proximity, Effect::zones,   Effect::radar,
@@ -30,89 +30,89 @@ enum class SceneCounter : std::uint8_t {
     // Bodies.
     bodiesMoved,      ///< bodies that moved by their velocities
     fellAsleep,       ///< bodies that fell asleep
-    wokeUp,           ///< sleeping bodies that woke
+    wokeUp,           ///< sleeping bodies that woke up
     sleepersAsked,    ///< sleeping bodies tested for waking
-    groundsAsked,     ///< bodies put on the ground
-    trianglesTested,  ///< triangles tested for these bodies
+    groundsAsked,     ///< bodies for which the ground was queried
+    trianglesTested,  ///< triangles tested in ground queries
     // The grid and its pairs.
     proxiesHashed,    ///< boxes set in the grid
     entriesFiled,     ///< entries written into the grid's tables
-    cellRowsVisited,  ///< rows of cells, or a ray's blocks of boxes, read by all queries
+    cellRowsVisited,  ///< rows of cells (for rays: blocks of boxes) read by all queries
     boxesTested,      ///< boxes tested for pairs
-    pairsWatched,     ///< known pairs tested for overlap
+    pairsWatched,     ///< existing pairs tested for overlap
     couplesWatched [[deprecated("pairsWatched")]] = pairsWatched,
     pairsBorn,         ///< pairs that began
     pairsDied,         ///< pairs that ended
     contactsTested,    ///< pairs of spheres tested for contact
-    contactsSolved,    ///< bounces among these pairs
-    sweepsSolved,      ///< bodies that swept
-    sweepBoxesTested,  ///< boxes tested on their ways
-    sweepersStopped,   ///< sweeping bodies that hit one that they would have passed
-    // Questions asked since the frame before.
+    contactsSolved,    ///< pairs of spheres that bounced
+    sweepsSolved,      ///< bodies that swept a path
+    sweepBoxesTested,  ///< boxes tested on the paths of swept bodies
+    sweepersStopped,   ///< swept bodies that hit a body they would have passed
+    // Picks and selections since the previous frame.
     picks,                 ///< picking rays
-    pickBoxesTested,       ///< boxes tested for these rays
+    pickBoxesTested,       ///< boxes tested for picking rays
     selections,            ///< drag rectangles
-    selectionBoxesTested,  ///< boxes tested for these rectangles
+    selectionBoxesTested,  ///< boxes tested for drag rectangles
     // Culling.
     viewsFound,          ///< 1 if the visible set was searched, 0 if it was kept
-    cellRowsCulled,      ///< rows of cells read
+    cellRowsCulled,      ///< rows of cells read by culling
     cullingBoxesTested,  ///< boxes tested against the view
-    framesCulledLate,    ///< 1 if the visible set is of an earlier frame, by declaration
+    framesCulledLate,    ///< 1 if the set was not searched: CullingEffect::restingCameraFrames
     // Proximity.
-    agentsScanned,     ///< agents that looked around, or were looked at
-    neighboursTested,  ///< distances tested
-    agentsLate,        ///< agents that did not look around: far ones, or out of turn
+    agentsScanned,     ///< agents that searched, and their possible neighbours
+    neighboursTested,  ///< distances between agents tested
+    agentsLate,        ///< agents that did not search: far, or not their turn
     // Zones.
     zonesTested,      ///< zones searched
-    zoneBoxesTested,  ///< boxes tested for these zones
+    zoneBoxesTested,  ///< boxes tested for searched zones
     zonesLate,        ///< far zones not searched in this frame
     // Radar.
     radarScans,        ///< 1 if the radar was scanned
-    radarBoxesTested,  ///< boxes tested for the scan
-    radarsLate,        ///< 1 if the counts are of an earlier frame
+    radarBoxesTested,  ///< boxes tested by the radar
+    radarsLate,        ///< 1 if the counts are from an earlier frame
 };
 
 /// Tables of a scene. sceneTables() lists the effects of each table.
 enum class SceneTable : std::uint8_t {
     bodies,      ///< positions, radii, and the effects that each body takes part in
-    velocities,  ///< of all bodies
-    movers,      ///< which bodies are awake
-    sleepers,    ///< which bodies are asleep, and how long others have been slow
-    ground,      ///< triangles and the grid that holds them
-    walkers,     ///< where the ground is asked for, and the answers
+    velocities,  ///< velocities of all bodies
+    movers,      ///< list of awake bodies
+    sleepers,    ///< sleeping bodies, and how long other bodies have been slow
+    ground,      ///< triangles and their grid
+    walkers,     ///< positions at which the ground is queried, and results
     proxies,     ///< ids of the bodies in the grid
     grid,        ///< boxes, and tables of boxes
-    pairs,       ///< watched pairs, and changes of pairs
-    contacts,    ///< the present pairs
-    sweeps,      ///< ways, and scratch of the search along them
+    pairs,       ///< pairs, and their changes
+    contacts,    ///< list of present pairs
+    sweeps,      ///< paths, and scratch memory of the search along them
     sweepers,    ///< bodies that sweep in this frame
     rayTrees,    ///< trees over the grid, which only rays read
-    visible,     ///< a bit for each body
-    agents,      ///< positions by cell, counts, and colours
+    visible,     ///< visible set: a bit for each body
+    agents,      ///< positions of agents by cell, counts, and colours
     zones,       ///< zones, their occupants, and events
-    radar,       ///< counts
+    radar,       ///< counts by cell and group
     groups,      ///< the radar group of each body
 };
 
 /// A counter or table, and its effects.
 struct SceneItem {
-    std::string_view name;         ///< as the enumerator is spelled: "bodiesMoved"
-    EffectSet owners;              ///< empty: every scene has it
+    std::string_view name;         ///< spelled like the enumerator: "bodiesMoved"
+    EffectSet owners;              ///< its effects; empty: every scene has the item
     std::string_view description;  ///< a few words in English
 };
 
-/// Numbers of counters and tables.
+/// How many counters and tables there are.
 inline constexpr std::size_t kSceneCounterCount = 35;
 inline constexpr std::size_t kSceneTableCount = 18;
 
-/// Return all items, in the order of their enumerators, for reports and profilers.
+/// Return all items in the order of their enumerators, for reports and profilers.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT const std::array<SceneItem, kSceneCounterCount>&
 sceneCounters() noexcept;
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT const std::array<SceneItem, kSceneTableCount>&
 sceneTables() noexcept;
 
-/// A number for each Item, SceneCounter or SceneTable: of one frame, or a sum. All are 0 at first. Items beyond the
-/// last enumerator are not checked.
+/// One number for each Item (SceneCounter or SceneTable), of one frame or a sum. All numbers are 0 at first. The
+/// operators do not check for items beyond the last enumerator.
 template <class Item, std::size_t count>
 class SceneNumbers {
 public:

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The paper's simulation: spheres that roam, stand on a terrain, bounce, sweep, sleep, and are looked at. After
+// The paper's simulation: spheres that move, stand on a terrain, bounce, sweep, sleep, and are observed. Source:
 // Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005.
 //
 //     Simulation<float> simulation(effects);
 //     BodyId ball = simulation.add({.position = {0, 5, 0}, .velocity = {1, 0, 0}});
 //     simulation.advance(1.0F / 60);
 //
-// Undeclared  An undeclared effect costs nothing, not even a branch in a loop. A call that needs it throws
-//             UndeclaredEffect. Rotation and friction run only under Bullet.
-// Exact       Motion, terrain, response, sweep and sleeping decide the positions of bodies, to the last bit, whatever
-//             else is declared, on any number of threads. The other effects only look.
-// Bodies      Each takes part in its own effects, if they are declared. Without motion it stands still, and others
-//             bounce off it. Without response it is a sensor.
-// Threads     Const members may run at the same time. All else needs the simulation for itself.
-// Failure     If memory runs out in advance(), some bodies may have moved; the next frame works, and reports all
-//             pairs as born. In add() and remove(), nothing has changed.
+// Undeclared  An undeclared effect costs nothing, not even a branch in a loop. A call that needs an undeclared effect
+//             throws UndeclaredEffect. Rotation and friction run only in Bullet.
+// Exact       Only motion, terrain, response, sweep and sleeping decide the positions of bodies. Positions are equal
+//             to the last bit on any number of threads, whichever other effects are declared.
+// Bodies      A body takes part in its own effects, if they are declared. Without motion it stands still, and other
+//             bodies bounce off it. Without response it is a sensor.
+// Threads     Const members may run on several threads at once. During other calls, no other thread may use the
+//             simulation.
+// Failure     If memory runs out in advance(), some bodies may have moved. The next frame works, and reports all
+//             pairs as born. If add() or remove() fails, nothing has changed.
 // Units       metres, seconds
-// Misuse      Asserted: ids are valid, and time steps finite and not negative. Else invalid ids throw
-//             std::out_of_range.
+// Misuse      Asserted: ids are valid, and time steps are finite and not negative. Without assertions, invalid ids
+//             throw std::out_of_range.
 
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/grid.hpp>
@@ -43,12 +44,12 @@
 
 namespace hashphase {
 
-/// Names one body of one simulation; zero is null. `index` is its proxy's index.
+/// Identifies one body of one simulation. `index` is also its proxy's index.
 struct BodyId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
 
-    /// True for BodyId{}, which names no body.
+    /// True for BodyId{}, which identifies no body.
     [[nodiscard]] constexpr bool isNull() const noexcept { return generation == 0; }
     friend constexpr auto operator<=>(const BodyId&, const BodyId&) = default;
 };
@@ -58,10 +59,10 @@ template <class Scalar>
 struct Body {
     Vector3<Scalar> position = Vector3<Scalar>::Zero();  ///< of the centre [m]
     Scalar radius = 1;                                   ///< [m]
-    Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  ///< [m/s]; kept if motion is declared
-    EffectSet effects = EffectSet::all();                ///< what the body takes part in
-    std::uint32_t group = 0;  ///< in the radar; kept if the radar is declared
-    bool isAsleep = false;    ///< at first; kept if sleeping is declared
+    Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  ///< [m/s]; ignored without motion
+    EffectSet effects = EffectSet::all();                ///< effects in which the body takes part
+    std::uint32_t group = 0;                             ///< radar group; ignored without radar
+    bool isAsleep = false;                               ///< at first; ignored without sleeping
 };
 
 /// Runs frames of spheres, with the declared effects.
@@ -78,29 +79,29 @@ public:
 
     /// Changes the declaration. Makes and frees tables of effects. Bodies stay.
     ///
-    ///     motion     new: all bodies stand still
-    ///     sleeping   new: all bodies are awake
-    ///     radar      new: all bodies are in group 0
-    ///     terrain    another TerrainEffect::up: no triangles are left
-    ///     pairs      new: all pairs are reported as born
-    ///     the grid   new, or another GridConfig: old ProxyIds are invalid, all pairs are reported as born, and
-    ///                proxies in a zone enter it again
+    ///     motion     newly declared: all bodies stand still
+    ///     sleeping   newly declared: all bodies are awake
+    ///     radar      newly declared: all bodies are in group 0
+    ///     terrain    declared with another TerrainEffect::up: all triangles are removed
+    ///     pairs      newly declared: all pairs are reported as born
+    ///     the grid   newly needed, or with another GridConfig: old ProxyIds are invalid, all pairs are reported as
+    ///                born, and proxies in a zone enter the zone again
     ///
-    /// Throws std::invalid_argument with simulationError(effects); then nothing has changed. Throws std::bad_alloc;
-    /// then nothing has changed, or the next call completes the change. Cost: at most as adding all bodies.
+    /// Throws std::invalid_argument with simulationError(effects), and changes nothing. Throws std::bad_alloc: in
+    /// that case nothing has changed, or the next advance() completes the change. Cost: at most as adding all bodies.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
 
     // --- Bodies ----------------------------------------------------------------------------------
 
-    /// Adds a sphere. Cost: O(1) amortised, and a pass over all bodies in the next frame.
+    /// Adds a sphere. Cost: O(1) amortised, and one pass over all bodies in the next frame.
     BodyId add(const Body<Scalar>& body);
 
     /// Removes a body. Its id is never valid again. Cost: as add().
     void remove(BodyId id);
 
-    /// Returns whether the id names a body that was not removed.
+    /// Returns whether the id belongs to a body that was not removed.
     [[nodiscard]] bool contains(BodyId id) const noexcept;
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
@@ -109,31 +110,32 @@ public:
     [[nodiscard]] Scalar radius(BodyId id) const;
     [[nodiscard]] EffectSet effects(BodyId id) const;
 
-    /// [m/s]. Setting it wakes the body. Both need motion.
+    /// The velocity [m/s]. setVelocity() wakes the body. Both functions need Effect::motion.
     [[nodiscard]] const Point& velocity(BodyId id) const;
     void setVelocity(BodyId id, const Point& velocity);
 
-    /// Returns whether the body takes part in motion and sleeps. Needs sleeping.
+    /// Returns whether the body takes part in motion and is asleep. Needs Effect::sleeping.
     [[nodiscard]] bool isAsleep(BodyId id) const;
 
-    /// Moves the centre of the body to `position` [m] at once. The body wakes, and does not sweep there.
+    /// Moves the centre of the body to `position` [m] at once. The body wakes. It hits no bodies in between.
     void setPosition(BodyId id, const Point& position);
 
-    /// Returns the body of a proxy; null if the proxy is no body here.
+    /// Returns the body of a proxy; null if the proxy belongs to no body of this simulation.
     [[nodiscard]] BodyId bodyOf(ProxyId id) const;
 
     // --- Scene -----------------------------------------------------------------------------------
 
-    /// The triangles that bodies stand on. Needs terrain. Bodies that sleep on changed or removed triangles stay
-    /// asleep: find them by a ChangedGround, and wake them by setPosition() to their place.
+    /// The triangles that bodies stand on. Needs Effect::terrain. Bodies that sleep on changed or removed triangles
+    /// stay asleep. Find these bodies by a ChangedGround, and wake each by setPosition() with its present position.
     [[nodiscard]] Terrain<Scalar>& ground();
 
-    /// Set view, interest, zones and colours here, and read results. Bodies beyond sleeping's interest radius sleep.
+    /// Set view, interest, zones and colours here, and read results. Bodies farther from the interest than
+    /// SleepingEffect::interestRadius sleep.
     [[nodiscard]] Observers<Scalar>& observers() noexcept { return observers_; }
     [[nodiscard]] const Observers<Scalar>& observers() const noexcept { return observers_; }
 
-    /// The grid of all bodies, as of the last frame. It keeps old boxes while no body takes part in one of
-    /// kGridEffects. Needs one of kGridEffects.
+    /// The grid of all bodies, with their boxes in the last frame. Boxes are not updated while no body takes part in
+    /// any of kGridEffects. Needs one of kGridEffects.
     [[nodiscard]] const Grid<Scalar>& grid() const;
 
     // --- Frame -----------------------------------------------------------------------------------
@@ -141,31 +143,31 @@ public:
     /// Simulates `seconds` [s] in one step. Returns the cost.
     const SceneCost& advance(Scalar seconds, ParallelFor parallelFor = serialFor);
 
-    /// Cost of the last frame, with the calls between the frame before and it.
+    /// Cost of the last advance(), and of the calls between the previous advance() and it.
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
     /// Names of a frame's phases, in order: "move", "pair", "respond", "observe" ...
     [[nodiscard]] std::vector<std::string_view> phases() const;
 
-    /// Calls `watch` with the name after each phase, for a profiler; also after each part of "observe", with its
-    /// effect's name: "observe" is then the rest. An empty function ends the calls.
+    /// Calls `watch` with the phase's name after each phase, for a profiler. Parts of "observe" are reported before
+    /// "observe", by the names of their effects. "observe" itself marks the rest. An empty function ends the calls.
     void watchPhases(std::function<void(std::string_view)> watch);
 
-    /// Lets two bodies bounce if they touch and approach, for pairs from another broadphase. Returns whether they
-    /// bounced; bodies without response never do. Called after advance() for all touching pairs, sorted by the
-    /// bodies' indices, it replaces response, to the last bit. `restitution`: see ResponseEffect. Needs motion.
-    /// Asserted: the bodies differ. Cost: O(1).
+    /// Lets two bodies bounce if they touch and approach each other. Use it for pairs from another broadphase.
+    /// Returns whether they bounced; bodies without response never bounce. To replace the response effect with
+    /// results equal to the last bit, call it after advance() for all touching pairs, sorted by the bodies' indices.
+    /// `restitution`: see ResponseEffect. Needs Effect::motion. Asserted: the bodies differ. Cost: O(1).
     bool collide(BodyId first, BodyId second, double restitution = 1);
 
-    /// Births and deaths of pairs in the last frame. Valid until the next one. Needs pairs.
+    /// Births and deaths of pairs in the last frame. Valid until the next frame. Needs Effect::pairs.
     [[nodiscard]] const PairChanges& pairChanges() const;
 
-    /// Number of pairs in the last frame. Needs pairs.
+    /// Number of pairs in the last frame. Needs Effect::pairs.
     [[nodiscard]] std::size_t pairCount() const;
 
     // --- On request ------------------------------------------------------------------------------
 
-    /// As Observers::pick() and Observers::select(), over this simulation's bodies.
+    /// As Observers::pick() and Observers::select(), among the bodies of this simulation.
     [[nodiscard]] Picked<Scalar> pick(const RayRegion<Scalar>& ray);
     QueryCost select(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                      std::vector<ProxyId>& selected,
@@ -174,8 +176,8 @@ public:
     /// Returns the bytes of each table, capacity included: exactly 0 for undeclared effects. Cost: O(zones).
     [[nodiscard]] SceneFootprint footprint() const;
 
-    /// Returns the broken invariant in a sentence; empty if all hold. Call it after advance(). In a frame in which a
-    /// body swept, pairs are not checked.
+    /// Returns the first broken invariant in a sentence. Empty if all invariants hold. Call it after advance(). If a
+    /// body swept in that frame, pairs are not checked.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -192,7 +194,7 @@ private:
         void (Simulation::*run)();
     };
 
-    /// The body's index; it is alive (asserted).
+    /// Returns the body's index. Asserted: the id is valid.
     [[nodiscard]] std::size_t indexOf(BodyId id) const;
     [[nodiscard]] bool isAlive(std::size_t body) const noexcept {
         return (generations_[body] & 1) != 0;
@@ -204,7 +206,7 @@ private:
     [[nodiscard]] Aabb<Scalar> boxOf(std::size_t body) const {
         return boxAt(positions_[body], radii_[body]);
     }
-    /// Whether anything can change its velocity.
+    /// Whether anything can change the velocity of the body.
     [[nodiscard]] bool isMovable(std::size_t body) const noexcept {
         return motion_ != nullptr && effectsOf_[body].contains(Effect::motion);
     }
@@ -270,11 +272,11 @@ private:
     std::vector<Scalar> radii_;
     std::vector<EffectSet> effectsOf_;
     std::vector<std::uint32_t> generations_;
-    std::vector<std::uint32_t> vacant_;  // indices without a body, where no grid gives them out
-    std::vector<std::uint32_t> groups_;  // where radar is declared
+    std::vector<std::uint32_t> vacant_;  // free indices, if there is no grid to choose indices
+    std::vector<std::uint32_t> groups_;  // if radar is declared
     std::size_t size_ = 0;
-    EffectSet present_;  // what some body takes part in
-    EffectSet common_;   // what every body takes part in
+    EffectSet present_;  // effects in which some body takes part
+    EffectSet common_;   // effects in which every body takes part
 
     // Tables of effects.
     std::unique_ptr<Motion> motion_;
@@ -289,15 +291,15 @@ private:
     // The frame under way.
     Scalar seconds_ = 0;
     const ParallelFor* parallelFor_ = nullptr;
-    Scalar farthestMove_ = 0;     // of a corner of a box
-    bool changedOutside_ = true;  // since the last frame, by other than advance()
+    Scalar farthestMove_ = 0;     // how far a corner of a box moved
+    bool changedOutside_ = true;  // since the last frame, by calls other than advance()
     SceneCost cost_;
-    SceneCost between_;  // work since then, part of the next frame's cost
+    SceneCost between_;  // work since the last frame, part of the next frame's cost
     std::function<void(std::string_view)> watch_;
 };
 
-/// Returns in a sentence why a Simulation cannot run the declaration: as effectsError(), and for effects that only
-/// Bullet runs. Empty if it can.
+/// Returns the reason why a Simulation cannot run the declaration, in a sentence: effectsError(), or an effect that
+/// runs only in Bullet. Empty if a Simulation can.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string simulationError(const SceneEffects& effects);
 
 extern template class Simulation<float>;
@@ -305,6 +307,6 @@ extern template class Simulation<double>;
 
 }  // namespace hashphase
 
-/// For keys of std::unordered_map.
+/// Allows a BodyId as key of std::unordered_map.
 template <>
 struct std::hash<hashphase::BodyId> : hashphase::detail::IdHash<hashphase::BodyId> {};

@@ -11,13 +11,14 @@
 
 namespace hashphase {
 
-/// Thrown by a call that needs an undeclared effect; the call has done nothing. what() names the call and the effect.
+/// Thrown by a call that needs an undeclared effect. The call has changed nothing. what() names the call and the
+/// effect.
 class HASHPHASE_EFFECTS_EXPORT UndeclaredEffect : public std::logic_error {
 public:
     /// `call` is the called function, such as "colours()".
     UndeclaredEffect(Effect effect, std::string_view call);
 
-    /// For a call that needs one of these effects; effect() is the first of them. `oneOf` is not empty.
+    /// For a call that needs one of several effects: `oneOf`, which is not empty. effect() returns the first.
     UndeclaredEffect(EffectSet oneOf, std::string_view call);
 
     /// The effect to declare.

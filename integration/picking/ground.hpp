@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Picking in flat worlds, in which all objects stand on the ground, between two heights.
+// Picking in flat worlds: all objects stand on the ground, between two heights.
 //
 // Units     metres
-// Bad data  Empty rays, and heights that are NaN or exchanged, meet nothing.
+// Bad data  Results are empty for empty rays, and for heights that are NaN or inverted (low above high).
 // Source    The paper's pick for 2D grids takes the point at which the ray meets the ground, and misses tall objects
-//           in front of it. This one follows the ray between the heights.
+//           in front of it. clipToHeights() follows the ray between the heights.
 
 #include <broadphase/regions.hpp>
 #include <integration/camera/camera.hpp>
@@ -18,20 +18,20 @@
 
 namespace hashphase {
 
-/// Returns the part of a ray between the heights. It meets every box there that the whole ray meets, except for
-/// rounding. Fractions count from its own beginning. Empty if the ray never gets there.
+/// Returns the part of a ray between the heights. Except for rounding, the part meets every box there that the whole
+/// ray meets. Its fractions count from its beginning. Empty if the ray is never between the heights.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT RayRegion<Scalar> clipToHeights(
     const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights);
 
-/// Returns the point [m] at which the ray meets the plane at this height [m]. Nothing if the ray ends before the
-/// plane, looks above the horizon, or is parallel to the ground.
+/// Returns the point [m] at which the ray meets the plane at this height [m]. Returns std::nullopt if the ray ends
+/// before the plane, points away from it, or is parallel to it.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT std::optional<Vector3<Scalar>> groundPoint(
     const RayRegion<Scalar>& ray, std::type_identity_t<Scalar> height = 0, UpAxis up = UpAxis::y);
 
-/// Returns the ground under a rectangle dragged on the screen (drag_selection.hpp, ground_footprint.hpp). Select by
-/// its region(), which includes the air above the ground.
+/// Returns the ground under a rectangle dragged on the screen (drag_selection.hpp, ground_footprint.hpp). To select
+/// objects, query its region(), which includes the air above the ground.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline GroundFootprint<Scalar> dragFootprint(
     const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,

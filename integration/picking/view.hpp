@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Renamed: include integration/camera/camera.hpp; write Camera and cameraError().
+// Deprecated: include integration/camera/camera.hpp, and use Camera and cameraError().
 
 #include <integration/camera/camera.hpp>
 

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds where the ground of a terrain has changed, and the proxies that may stand there: wake them, or let them fall.
+// Finds where the ground of a terrain has changed, and the proxies that may stand there. Wake them, or let them fall.
 //
-// Frame    Change the terrain, update the grids, call findStanding() for each grid with bodies, then clear(). Without
-//          clear(), the next call finds them again, and more. Before the update, results are equal, but may cost as
-//          much as another update.
-// Notes    The boxes of added and removed triangles, and of replaced ones before and after. Consecutive boxes that
-//          make one box are joined. A shift of the origin shifts them.
-// Memory   Taken once, by the constructor. If it is full, each two consecutive boxes become the box around both: more
-//          proxies may be found, never fewer.
+// Frame    Change the terrain, update the grids, call findStanding() for each grid with bodies, then call clear().
+//          Without clear(), the next findStanding() searches these places again. Before the update, findStanding()
+//          has equal results, but may cost as much as another update.
+// Boxes    This object keeps the boxes of added and removed triangles, and of replaced triangles before and after.
+//          Consecutive boxes whose union is a box are joined. Terrain::shiftOrigin() shifts the boxes.
+// Memory   Allocated once, by the constructor. If the memory is full, every pair of consecutive boxes becomes one box
+//          around both. This may find more proxies, never fewer.
 // Units    metres
-// Threads  Const functions may run on any number of threads. Changes of the terrain need this object for themselves.
-// Misuse   Asserted: a reach is 0 or more, else findStanding() finds nothing; the terrain outlives this object.
+// Threads  Const functions may run on several threads at once. When the terrain changes, no other thread may use this
+//          object.
+// Misuse   Asserted: `reach` is 0 or more (otherwise nothing is found), and the terrain outlives this object.
 
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
@@ -28,31 +29,31 @@
 
 namespace hashphase {
 
-/// Notes changes of the ground while it lives, and finds proxies there.
+/// Records changes of the ground from construction on, and finds proxies there.
 template <class Scalar>
 class HASHPHASE_TERRAIN_TEMPLATE_EXPORT ChangedGround {
 public:
     using Box = Aabb<Scalar>;
 
-    /// Takes room for `mostBoxes`, at least 2, of 24 bytes each, 48 in double precision.
+    /// Allocates `mostBoxes` boxes, at least 2, of 24 bytes each, or 48 in double precision.
     explicit ChangedGround(Terrain<Scalar>& terrain, std::size_t mostBoxes = 16384);
     ~ChangedGround();
     ChangedGround(const ChangedGround&) = delete;
     ChangedGround& operator=(const ChangedGround&) = delete;
 
-    /// Places where the ground has changed since clear(), in the order of changes.
+    /// Boxes in which the ground has changed since clear(), in the order of changes.
     [[nodiscard]] std::span<const Box> boxes() const noexcept { return boxes_; }
 
     /// Finds the proxies of any grid whose boxes touch one of boxes(), grown by `reach` [m] on all sides. Replaces
-    /// `standing`: sorted, each once, without the terrain's own. `filter` is asked once about each. Returns the cost.
-    /// Cost: as Grid::visit() for each of boxes(), and sorting the result.
+    /// `standing`, sorted by id: each proxy once, without the terrain's own. Calls `filter` once for each found
+    /// proxy. Returns the cost. Cost: Grid::visit() for each of boxes(), and sorting the result.
     QueryCost findStanding(const Grid<Scalar>& grid, std::type_identity_t<Scalar> reach,
                            std::vector<ProxyId>& standing, ProxyFilter filter = acceptAll) const;
 
     /// Forgets all changes. Cost: O(1).
     void clear() noexcept { boxes_.clear(); }
 
-    /// Bytes held.
+    /// Bytes held, capacity included.
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return boxes_.capacity() * sizeof(Box);
     }
