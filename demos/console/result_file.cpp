@@ -29,10 +29,6 @@ std::filesystem::path behindLinks(std::filesystem::path path) {
     return path;
 }
 
-std::string reasonOf(int error) {
-    return error == 0 ? "" : ": " + std::generic_category().message(error);
-}
-
 }  // namespace
 
 ResultFile::ResultFile(std::filesystem::path path) : path_(std::move(path)) {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <fstream>
+#include <cerrno>
 #include <system_error>
 
 namespace hashphase::demos {
@@ -71,8 +71,8 @@ void requireFile(const std::filesystem::path& path) {
     if (std::filesystem::is_directory(status)) {
         throw InputError(path.string() + " is a folder, not a file.");
     }
-    if (!std::filesystem::exists(status)) {
-        throw InputError(path.string() + " cannot be read: there is no such file.");
+    if (error) {
+        throw InputError(path.string() + " cannot be read" + reasonOf(error.value()) + ".");
     }
     if (!std::filesystem::is_regular_file(status)) {
         throw InputError(path.string() +
@@ -80,12 +80,18 @@ void requireFile(const std::filesystem::path& path) {
     }
 }
 
-std::string readFile(const std::filesystem::path& path) {
+std::ifstream openToRead(const std::filesystem::path& path) {
     requireFile(path);
+    errno = 0;
     std::ifstream file(path, std::ios::binary);
     if (!file) {
-        throw InputError(path.string() + " cannot be read: you may not open it.");
+        throw InputError(path.string() + " cannot be read" + reasonOf(errno) + ".");
     }
+    return file;
+}
+
+std::string readFile(const std::filesystem::path& path) {
+    std::ifstream file = openToRead(path);
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (!error && size > kLargestFile) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ inline constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 30;
 /// Throws InputError, naming the path, where there is no file, a folder, or something that may never
 /// end, or never begin: a device, a pipe.
 void requireFile(const std::filesystem::path& path);
+
+/// The file, open. Throws InputError, naming the path, as requireFile() does, and when it cannot be opened.
+[[nodiscard]] std::ifstream openToRead(const std::filesystem::path& path);
 
 /// The bytes of the file. Throws InputError, naming the path, as requireFile() does, and when the file
 /// cannot be read or is larger than kLargestFile. Memory: the file's size.

@@ -29,12 +29,7 @@ std::array<float, 8> floatsOfBox(const char* bytes) {
 
 RecordingScene::RecordingScene(const std::filesystem::path& path, std::size_t objects,
                                const TellWaiting& tell)
-    : path_(path.string()) {
-    requireFile(path);
-    file_.open(path, std::ios::binary);
-    if (!file_.is_open()) {
-        throw InputError(path_ + " cannot be read: you may not open it.");
-    }
+    : path_(path.string()), file_(openToRead(path)) {
     readHeader();
     if (objects > recordedObjects_) {
         throw InputError(path_ + " holds " + std::to_string(recordedObjects_) +

@@ -15,10 +15,12 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 namespace hashphase::demos {
@@ -54,9 +56,23 @@ void expectRefused(const std::string& path, const std::string& why = {}) {
 TEST(HostileFiles, ThatAreNoneAreRefused) {
     const TemporaryFolder folder;
     expectRefused(folder.file("none"),
-                  folder.file("none") + " cannot be read: there is no such file.");
+                  folder.file("none") + " cannot be read: No such file or directory.");
     expectRefused(folder.file(""), folder.file("") + " is a folder, not a file.");
     expectRefused(folder.write("empty", ""));
+}
+
+TEST(HostileFiles, ThatTheSystemRefusesAreRefusedWithItsReason) {
+    const TemporaryFolder folder;
+    const std::string loop = folder.file("loop");
+    std::filesystem::create_symlink("loop", loop);
+    expectRefused(loop, loop + " cannot be read: Too many levels of symbolic links.");
+    const std::string whole = folder.write("whole", "0 0 0 1 1 1");
+    rlimit before{};
+    getrlimit(RLIMIT_NOFILE, &before);
+    const rlimit none{0, before.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+    expectRefused(whole, whole + " cannot be read: Too many open files.");
+    setrlimit(RLIMIT_NOFILE, &before);
 }
 
 // A reader that opened them would wait, or read, for ever.
