@@ -131,7 +131,8 @@ TEST(TextFiles, OfAnotherKindAreRefusedByItsName) {
     for (const auto& [bytes, why] :
          {std::pair<std::string, std::string>{"\x89PNG\r\n\x1a\n",
                                               " is a PNG picture, not a text file."},
-          {"\xff\xd8\xff\xe0", " is a JPEG picture, not a text file."},
+          {"\x1f\x8b\b", " is a gzip archive, not a text file."},
+          {"PK\3\4", " is a ZIP archive or an office document, not a text file."},
           {"BULLETf_v282",
            " is a world that Bullet saved, whose name should end in .bullet, not a text file."},
           {"0 0 0 1 1 1 # caf\xe9\n", " is not in UTF-8 (byte 18): save it again as UTF-8."},
