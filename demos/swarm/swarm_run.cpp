@@ -2,7 +2,7 @@
 #include <demos/swarm/swarm_run.hpp>
 
 #include <demos/report/stopwatch.hpp>
-#include <demos/system/interruption.hpp>
+#include <demos/swarm/agreed_end.hpp>
 
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
@@ -109,33 +109,6 @@ FrameSums sumsOf(const RankGrid<float>& grid, const PairChanges& changes) {
     return sums;
 }
 
-/// Whether a rank was asked to end, known on all ranks in the same frame. No rank waits for it: what is said in a
-/// frame is known in the next one.
-class AgreedEnd {
-public:
-    explicit AgreedEnd(MPI_Comm communicator) : communicator_(communicator) {}
-
-    /// Once a frame.
-    [[nodiscard]] bool isCalledFor() {
-        const bool isCalled = take();
-        own_ = isInterrupted() ? 1 : 0;
-        MPI_Iallreduce(&own_, &all_, 1, MPI_INT, MPI_MAX, communicator_, &request_);
-        return isCalled;
-    }
-
-    /// What was said last, after the last frame.
-    [[nodiscard]] bool take() {
-        MPI_Wait(&request_, MPI_STATUS_IGNORE);
-        return all_ != 0;
-    }
-
-private:
-    MPI_Comm communicator_;
-    MPI_Request request_ = MPI_REQUEST_NULL;
-    int own_ = 0;
-    int all_ = 0;
-};
-
 /// What ranks have measured, by frame, on rank 0.
 std::vector<std::vector<RankFrame>> gathered(MPI_Comm communicator,
                                              const std::vector<RankFrame>& mine, std::uint32_t rank,
@@ -174,7 +147,7 @@ SwarmResult runSwarm(MPI_Comm communicator, const SwarmScene& scene, std::uint32
     SwarmResult result;
     result.ranks = grid.here().partition().rankCount();
     std::vector<RankFrame> mine;
-    AgreedEnd end(communicator);
+    AgreedEnd end(communicator, config.patience);
     for (std::uint32_t frame = 0; frame < frames && !end.isCalledFor(); ++frame) {
         const Stopwatch placing;
         spheres.place(scene, frame);
