@@ -58,8 +58,8 @@ void declareSwarm(CLI::App& app, SwarmOptions& options) {
         ->transform(wholeFrom(1, 1'000'000))
         ->capture_default_str();
     app.add_option("--ranks", options.ranks,
-                   "number of processes to start with mpirun (default: the processes that mpirun "
-                   "has started, or one)")
+                   "number of processes to start with mpirun, whose exit status after Ctrl-C is 1 "
+                   "(default: the processes that mpirun has started, or one)")
         ->transform(wholeFrom(1, 100'000));
     app.add_option("--seed", options.seed, "seed of the spheres")->transform(seedUpTo());
     app.add_option(
