@@ -35,6 +35,11 @@ std::size_t columnsOfConsole(DWORD stream) noexcept {
                : 0;
 }
 
+// Ctrl-C reaches all programs of a console: the one that runs instead decides when both end.
+BOOL WINAPI goOn(DWORD /*event*/) {
+    return TRUE;
+}
+
 }  // namespace
 
 bool errIsTerminal() noexcept {
@@ -66,6 +71,7 @@ int runInstead(const std::filesystem::path& program, std::vector<std::string> ar
         pointers.push_back(word.c_str());
     }
     pointers.push_back(nullptr);
+    SetConsoleCtrlHandler(&goOn, TRUE);
     const std::intptr_t code = _wspawnv(_P_WAIT, program.c_str(), pointers.data());
     if (code == -1) {
         throw std::system_error(errno, std::generic_category());
