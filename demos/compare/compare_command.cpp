@@ -68,7 +68,8 @@ void declare(CLI::App& app, CompareOptions& options) {
     app.add_option("--time-limit", options.timeLimit, "stop after this many seconds")
         ->transform(positiveSeconds());
     app.add_flag("--quick", options.isQuick,
-                 "measure less: at most 10,000 objects and 60 frames, unless you set them");
+                 "measure less: at most 60 frames, and in a built-in scene at most 10,000 objects, "
+                 "unless you set them");
     app.add_flag("--verbose", options.isVerbose, "print all columns, and the parts of a step");
     app.add_flag("--quiet", options.quiet, "print no progress");
     app.add_flag("--list", options.list, "print the scenes and broadphases, and exit");
