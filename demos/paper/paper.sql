@@ -4,7 +4,7 @@ R"sql(-- SPDX-License-Identifier: Zlib
 
 -- plan: a row with the settings
 
-CREATE TABLE IF NOT EXISTS left_out (what);  -- steps, for want of time
+CREATE TABLE IF NOT EXISTS left_out (what);  -- steps, by the time limit or an interruption
 
 -- A method at a task; part is "figure", "radius" or "cell size". A cell is null of un-optimized, which has
 -- none, and of hashphase, which chooses them. Of each run: timed frames, frames that were compared with
@@ -284,7 +284,7 @@ SELECT sentence FROM observations
 UNION ALL
 SELECT 'Not checked: ' || claim || ' (' || evidence || ').' FROM claims WHERE holds IS NULL
 UNION ALL
-SELECT 'Left out for want of time: ' || what || '.' FROM all_left_out;
+SELECT 'Left out: ' || what || '.' FROM all_left_out;
 
 /* {"checks": "all that was compared", "section": "Whether it is right"} */
 SELECT claim, holds, evidence FROM claims WHERE holds IS NOT NULL;

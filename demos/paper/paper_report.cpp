@@ -87,7 +87,7 @@ void printReport(PaperReport& report, bool showMilliseconds, const Console& cons
     print("SELECT sentence FROM observations");
     out << '\n';
     print("SELECT sentence FROM how_it_was_measured");
-    print("SELECT 'Left out for want of time: ' || what FROM all_left_out");
+    print("SELECT 'Left out: ' || what FROM all_left_out");
     out << '\n';
     print(
         "SELECT CASE holds WHEN 1 THEN 'holds' WHEN 0 THEN 'BROKEN' ELSE 'not checked' END || ': ' "

@@ -92,7 +92,7 @@ TEST(InterruptedPaper, SaysWhatIsLeftOut) {
     EXPECT_EQ(ended.exitCode, 143);
     EXPECT_TRUE(
         holds(ended.out, "\nThe run was interrupted: what it measured until then is here.\n"));
-    EXPECT_TRUE(holds(ended.out, "Left out for want of time: collision of 500\n"));
+    EXPECT_TRUE(holds(ended.out, "Left out: collision of 500\n"));
 }
 
 TEST(InterruptedEffects, EndOnceAFrameIsMeasured) {

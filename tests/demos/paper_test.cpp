@@ -340,7 +340,7 @@ TEST(PaperCommand, LeavesOutWhatTheTimeLimitDoesNotAllowAndClaimsNothing) {
     const std::string json = folder.file("paper.json");
     const Typed output = runPaperCommand({"--time-limit", "1e-9", "--json", json, "--quiet"});
     EXPECT_EQ(output.exitCode, kExitCheckFailed) << output.err;
-    EXPECT_TRUE(holds(output.out, "Left out for want of time: collision of 50,000, hashphase\n"));
+    EXPECT_TRUE(holds(output.out, "Left out: collision of 50,000, hashphase\n"));
     EXPECT_TRUE(holds(output.out, "the same as brute force: not checked\n"));
     const Json read = Json::parse(readFile(json));
     EXPECT_TRUE(read["checks"][0].at("holds").is_null());
