@@ -61,15 +61,15 @@ TEST(InterruptedAccuracy, KeepsTheExperimentsThatAreDone) {
 
 TEST(InterruptedStability, EndsTheCaseThatRunsAndLeavesItOut) {
     const TemporaryFolder folder;
-    const std::array cases{HardCase{"H1", "fine", "what is fine", "that it is",
-                                    [](CaseRun<float>& run) { run.expect(true, "it is fine"); }},
-                           HardCase{"H2", "no end", "what never ends", "that it does",
-                                    [](CaseRun<float>&) {
-                                        kill(getppid(), SIGINT);
-                                        pause();
-                                    }},
-                           HardCase{"H3", "fine", "what is fine", "that it is",
-                                    [](CaseRun<float>&) { ADD_FAILURE() << "is not run"; }}};
+    const std::array cases{
+        HardCase{"H1", "fine", "what is fine", "that it is",
+                 [](CaseRun<float>& run) { run.expect(true, "it is fine"); }},
+        HardCase{"H2", "no end", "what never ends", "that it does",
+                 [](CaseRun<float>&) {
+                     kill(getppid(), SIGINT);
+                     pause();
+                 }},
+        HardCase{"H3", "fine", "what is fine", "that it is", [](CaseRun<float>&) {}}};
     const std::array kinds{broadphaseKinds()[0], broadphaseKinds()[1]};
     const Typed ended =
         typed(stabilityCommand(kinds, cases), {"--quiet", "--json", folder.file("r.json")});
@@ -116,7 +116,6 @@ TEST(InterruptedEffects, EndOnceAFrameIsMeasured) {
         Measurements measured = priceEffects(file, settings);
         EXPECT_EQ(asked(measured, "SELECT frames, interrupted, stopped FROM run"),
                   "3 1 The run was interrupted");
-        EXPECT_TRUE(holds(asked(measured, "SELECT 1"), "1"));
         const Findings findings = effectsFindings(measured);
         EXPECT_TRUE(holds(joined(sentencesOf(findings.rows.at("end of the run")), "\n"),
                           "\nThe run was interrupted after 3 frames."));
