@@ -90,9 +90,9 @@ TEST(InterruptedBenchmarks, EndTheProgramWithTheSignalsStatus) {
         folder,
         "env --default-signal=INT '" HASHPHASE_BENCHMARKS_PROGRAM
         "' --only S2 --sizes 100 --frames 1000000 --contestants hash,dbvt --quiet --json r.json "
-        ">out &\n"
-        "until [ -e r.json.partial ] || ! kill -0 $!; do sleep 0.01; done; sleep 0.2\n"
-        "kill -INT $!; wait $!; status=$?; cat out; exit $status");
+        ">out &\n" +
+            demos::interruptOnce("[ -e r.json.partial ] && sleep 0.2") +
+            "wait $!; status=$?; cat out; exit $status");
     EXPECT_EQ(ended.status, 130) << ended.err;
     EXPECT_NE(ended.err.find("hashphase: the run was interrupted.\n"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(folder.file("r.json.partial")));

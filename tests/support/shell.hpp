@@ -37,4 +37,10 @@ inline ScriptOutput runInFolder(const TemporaryFolder& folder, const std::string
     return output;
 }
 
+/// Lines of a script: they send SIGINT to the last background job as soon as the condition, a command, holds. They go
+/// on if the job ends before.
+inline std::string interruptOnce(const std::string& condition) {
+    return "until " + condition + " || ! kill -0 $!; do sleep 0.01; done\nkill -INT $!\n";
+}
+
 }  // namespace hashphase::demos
