@@ -48,7 +48,7 @@ struct SwarmOptions {
 };
 
 void declareSwarm(CLI::App& app, SwarmOptions& options) {
-    app.add_option("--scene", options.scene, "how the spheres are spread; --list prints all ways")
+    app.add_option("--scene", options.scene, "population of spheres; --list prints all")
         ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--objects", options.objects, "number of spheres")
@@ -83,7 +83,7 @@ void declareSwarm(CLI::App& app, SwarmOptions& options) {
     app.add_flag("--plan", options.plan,
                  "print what 64 to 16,384 ranks would send each other, and exit");
     app.add_flag("--quiet", options.quiet, "print no progress");
-    app.add_flag("--list", options.list, "print the ways to spread spheres, and exit");
+    app.add_flag("--list", options.list, "print the populations, and exit");
 }
 
 SwarmKind chosenKind(const std::string& name) {
