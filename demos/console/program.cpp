@@ -5,7 +5,6 @@
 #include <demos/console/format.hpp>
 #include <demos/console/options.hpp>
 #include <demos/scenes/input_error.hpp>
-#include <demos/system/interruption.hpp>
 #include <demos/system/process.hpp>
 
 #include <broadphase/core/compiler.hpp>
@@ -113,8 +112,7 @@ int runGuarded(const Subcommand& command, Console& console) {
 }
 
 int runUnlessInterrupted(const Subcommand& command, Console& console) {
-    using enum NotedSignals::Next;
-    const NotedSignals signals(command.endsAtSecondSignal ? endsProcess : isNoted);
+    const NotedSignals signals(command.nextSignal);
     const int exitCode = finish(console, runGuarded(command, console));
     if (!isInterrupted()) {
         return exitCode;

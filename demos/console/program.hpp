@@ -9,6 +9,8 @@
 // Output        results go to `out`; progress, warnings and errors to `err`.
 // Interruption  a signal such as Ctrl-C ends a command as its time limit does (interruption.hpp).
 
+#include <demos/system/interruption.hpp>
+
 #include <cstddef>
 #include <functional>
 #include <iosfwd>
@@ -65,8 +67,8 @@ struct Subcommand {
     /// Runs with the options as parsed; returns the exit code. May throw InputError, and Interrupted.
     std::function<int(Console&)> run;
 
-    bool takesRest = false;          // words that follow the first `--`, as Console::rest
-    bool endsAtSecondSignal = true;  // at once; else it ends itself, however many there are
+    bool takesRest = false;  // words that follow the first `--`, as Console::rest
+    NotedSignals::Next nextSignal = NotedSignals::Next::endsProcess;  // what a second signal does
 };
 
 /// What `hashphase --help` says of the subcommand of that name, which there must be.

@@ -24,7 +24,7 @@ public:
 /// The last signal that was noted; 0: none.
 [[nodiscard]] int notedSignal() noexcept;
 
-/// Whether a terminal sent it, to all programs in its foreground.
+/// Whether a terminal sent it, to all programs in its foreground. POSIX only.
 [[nodiscard]] bool isFromKeyboard() noexcept;
 
 [[nodiscard]] inline bool isInterrupted() noexcept {

@@ -41,8 +41,4 @@ int notedSignal() noexcept {
     return lastSignal;
 }
 
-bool isFromKeyboard() noexcept {
-    return false;
-}
-
 }  // namespace hashphase::demos

@@ -201,7 +201,7 @@ int runTry(const TryOptions& options, Console& console) {
 Subcommand tryCommand() {
     Subcommand command = makeSubcommand<TryOptions>("try", declare, runTry);
     command.takesRest = true;
-    command.endsAtSecondSignal = false;
+    command.nextSignal = NotedSignals::Next::isNoted;
     return command;
 }
 

@@ -150,7 +150,7 @@ TEST(InterruptionDeathTest, EndsTheProcessTheSecondTimeUnlessThatIsNoted) {
         return kExitOk;
     });
     EXPECT_EXIT(typed(command, {}), testing::KilledBySignal(SIGTERM), "Ctrl-C again ends at once");
-    command.endsAtSecondSignal = false;
+    command.nextSignal = NotedSignals::Next::isNoted;
     EXPECT_EQ(typed(command, {}).exitCode, 143) << "the last one";
 }
 
