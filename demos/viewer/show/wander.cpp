@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -158,7 +159,8 @@ struct Run {
     std::unique_ptr<Session> session;
     std::optional<Script> script;
     std::optional<Playback> playback;
-    // Opened before anything runs, but not before what may be read from files of the same name.
+    // Opened before anything runs, as a wrong path is to cost no waiting, but not before what may be read from files
+    // of the same name; and opened again to be written, as commands may have written to the same files.
     std::optional<ResultFile> record;
     std::optional<ResultFile> json;
     bool drewPictures = false;
@@ -320,15 +322,20 @@ std::string Run::keep(const std::string& fault) {
 // Each that can be written; returns what is to be said of the others.
 std::string Run::writeFiles() {
     std::string faults;
-    const auto write = [&faults](ResultFile& file, const auto& content) {
+    const auto write = [&faults](std::optional<ResultFile>& file, const std::string& path,
+                                 const auto& content) {
         try {
-            file.write(content);
+            if (!std::filesystem::is_fifo(path)) {  // its reader takes a close as the end
+                file.emplace(path);
+            }
+            file->write(content);
         } catch (const InputError& fault) {
             faults += (faults.empty() ? "" : " ") + std::string(fault.what());
         }
     };
-    write(*record, [this](std::ostream& out) { out << session->log.text(); });
-    write(*json, [this](std::ostream& out) { writeNumbers(*session, framesPerSecond, out); });
+    write(record, options.recordFile, [this](std::ostream& out) { out << session->log.text(); });
+    write(json, options.jsonFile,
+          [this](std::ostream& out) { writeNumbers(*session, framesPerSecond, out); });
     return faults;
 }
 

@@ -329,6 +329,18 @@ TEST_F(Wander, NamesEachFileThatCannotBeWrittenAndWritesTheOthers) {
     }
 }
 
+// To a file that a command has written during the run, too.
+TEST_F(Wander, WritesItsFilesAtTheEnd) {
+    for (const char* name : {"r.json", "n.json"}) {
+        const Outcome whole =
+            run("--objects 50 --frames 20 --record " + file("r.json") + " --json " + file("n.json"),
+                {"--do", "save " + file(name)});
+        EXPECT_EQ(whole.code, kExitOk) << whole.err;
+        EXPECT_EQ(json::parse(std::ifstream(file("n.json")))["readings"]["frame"], 20);
+        expectReplayed(file("r.json"), 20);
+    }
+}
+
 TEST_F(Wander, EndsWithWhatWasPlayedWhenItIsInterrupted) {
     std::thread presser([path = file("kept.json.partial")] {
         while (!std::filesystem::exists(path)) {
