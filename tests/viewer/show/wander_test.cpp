@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -342,22 +343,26 @@ TEST_F(Wander, WritesItsFilesAtTheEnd) {
 }
 
 TEST_F(Wander, EndsWithWhatWasPlayedWhenItIsInterrupted) {
-    std::thread presser([path = file("kept.json.partial")] {
-        while (!std::filesystem::exists(path)) {
+    std::atomic<bool> isOver = false;
+    std::thread presser([&isOver, afterAFrame = file("first.aabbs")] {
+        while (!std::filesystem::exists(afterAFrame)) {
+            if (isOver) {
+                return;
+            }
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
         kill(getpid(), SIGINT);
     });
-    const Outcome cut = run("--objects 50 --frames 1000000000 --record " + file("kept.json") +
-                            " --json " + file("n.json"));
+    const Outcome cut = run("--objects 50 --frames 1000000000 --time-limit 60 --record " +
+                                file("kept.json") + " --json " + file("n.json"),
+                            {"--do", "capture " + file("first.aabbs") + " 1"});
+    isOver = true;
     presser.join();
     EXPECT_EQ(cut.code, 130);
     expectIn(cut.out, "\nThe run was interrupted: what it measured until then is here.\n");
     const int frames = json::parse(std::ifstream(file("n.json")))["readings"]["frame"];
-    if (frames > 0) {
-        expectReplayed(file("kept.json"), frames);
-    }
+    ASSERT_GT(frames, 0);
+    expectReplayed(file("kept.json"), frames);
 }
 
 TEST_F(Wander, SaysWhatIsWrong) {
