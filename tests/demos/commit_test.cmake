@@ -7,6 +7,15 @@
 
 cmake_minimum_required(VERSION 3.22)
 
+# A hook of a checkout that runs this has variables that lead every git into that checkout.
+execute_process(
+    COMMAND ${GIT} rev-parse --local-env-vars
+    OUTPUT_VARIABLE variables OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE "\n" ";" variables "${variables}")
+foreach(variable IN LISTS variables)
+    unset(ENV{${variable}})
+endforeach()
+
 function(git)
     execute_process(
         COMMAND ${GIT} -c user.name=n -c user.email=n@example.org -c commit.gpgsign=false ${ARGN}
