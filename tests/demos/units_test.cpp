@@ -42,6 +42,9 @@ TEST(Units, AreThoseOfEveryNumberOnAPage) {
 TEST(Units, AreMissedWhereThereAreNone) {
     EXPECT_FALSE(hasUnit("calculate"));
     EXPECT_FALSE(hasUnit("theory: r (1 - n_y)"));
+    EXPECT_FALSE(hasUnit("both, worst frame"));
+    EXPECT_FALSE(hasUnit("whole step"));
+    EXPECT_TRUE(hasUnit("frame"));
     EXPECT_TRUE(hasUnit("calculate [ms]"));
     EXPECT_TRUE(hasUnit("listed pairs"));
 }

@@ -58,7 +58,7 @@ FROM did ORDER BY point, number;
 CREATE VIEW shown_rests AS
 SELECT offset AS "offset_m: distance from the origin [m]", method,
        position_error AS "position_error_m: farthest from the place of rest [m]",
-       step AS "settle_step: settled after step",
+       step AS "settle_step: settled after [steps]",
        later AS "settle_difference: steps later than at the origin", step_ms AS "step_ms: step [ms]"
 FROM rested ORDER BY point, number;
 

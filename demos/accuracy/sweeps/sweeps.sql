@@ -85,7 +85,7 @@ ORDER BY motion_number, number;
     "title": "Contacts of bullets with walls that are detected, by the way of the bullet in a frame",
     "settings": "{walls}", "x": "ratio log", "y": "detected", "series": "method", "low": "low",
     "high": "high", "theory": "theory"} */
-SELECT ratio AS "ratio: step v dt, in units of wall and bullet, T + 2r", method,
+SELECT ratio AS "ratio: step v dt [T + 2r, wall and bullet]", method,
        percent(detected, contacts) AS "detected: contacts detected, bodies stopped [%]",
        100 * interval_low(detected, contacts) AS "low: at least [%]",
        100 * interval_high(detected, contacts) AS "high: at most, 95 % sure [%]",
