@@ -9,18 +9,6 @@
 #include <utility>
 
 namespace hashphase::demos {
-namespace {
-
-// Each order as likely as any other.
-void shuffle(std::vector<std::size_t>& order, Random& random) {
-    for (std::size_t i = order.size(); i > 1; --i) {
-        std::swap(order[i - 1],
-                  order[static_cast<std::size_t>(random.unit() * static_cast<float>(i))]);
-    }
-}
-
-}  // namespace
-
 std::span<const Experiment> experiments() {
     static const std::vector<Experiment> all{
         sweepExperiment(),   cellSizeExperiment(), proximityExperiment(), cullingExperiment(),

@@ -4,6 +4,7 @@
 #include <demos/compare/reference_pairs.hpp>
 #include <demos/console/format.hpp>
 #include <demos/report/frame_clock.hpp>
+#include <demos/scenes/random.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -47,13 +48,6 @@ constexpr std::uint32_t kFewestOfQuick = 2;  // frames of what is not as slow
 Subjects spotSubjects(const PhaseTask& task) {
     return task.objects <= kSpotChecked ? Subjects::all(task.objects)
                                         : Subjects::drawn(task.objects, kSpotChecked, task.seed);
-}
-
-void shuffle(std::vector<std::size_t>& order, Random& random) {
-    for (std::size_t left = order.size(); left > 1; --left) {
-        const auto other = static_cast<std::size_t>(random.unit() * static_cast<float>(left));
-        std::swap(order[left - 1], order[std::min(other, left - 1)]);
-    }
 }
 
 class PhaseRun {
