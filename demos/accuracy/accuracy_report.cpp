@@ -145,7 +145,7 @@ void printAdvice(const DataTable& advice, const Console& console) {
             printSentences({task}, console);
         }
         constexpr std::size_t kIndent = 12;
-        std::string line = "  " + valueText(row[1]);
+        std::string line = "  " + cellText(row[1], advice.columns[1]);
         line.resize(std::max(line.size() + 1, kIndent), ' ');
         line += valueText(row[2]) + ": " + valueText(row[3]);
         console.out << wrapped(line, lineWidth(console), kIndent) << '\n';

@@ -47,7 +47,7 @@ TEST(Accuracy, EndsWithAVerdict) {
     EXPECT_TRUE(holds(ran.out, "\n2 experiments, 1 check: all hold\n"));
     EXPECT_TRUE(holds(ran.out, "  holds   Swept modes miss nothing (0 of 1,000,000)\n"));
     EXPECT_TRUE(holds(ran.out, "\nFast movers\n  ")) << "the advice";
-    EXPECT_TRUE(holds(ran.out, "\n  2         Sweep::line: misses nothing\n"));
+    EXPECT_TRUE(holds(ran.out, "\n  2.00      Sweep::line: misses nothing\n"));
     EXPECT_FALSE(holds(ran.out, "misses a fifth")) << "slower and worse than another choice";
 }
 
