@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <tests/viewer/pictures.hpp>
 
+#include <demos/console/result_file.hpp>
+
 #include <gtest/gtest.h>
 
 #include <stb_image.h>
@@ -9,8 +11,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
+#include <ostream>
 #include <stdexcept>
 
 namespace hashphase::demos {
@@ -79,8 +81,7 @@ ImageDifference::ImageDifference(const Image& one, const Image& other) {
 }
 
 void savePng(const std::string& path, const Image& image) {
-    std::ofstream file(path, std::ios::binary);
-    writePng(image, file);
+    ResultFile(path).write([&image](std::ostream& out) { writePng(image, out); });
 }
 
 void expectGolden(const std::string& name, const Image& actual) {

@@ -13,7 +13,7 @@ namespace hashphase::demos {
 /// As four bytes a pixel. Throws std::runtime_error where there is none.
 [[nodiscard]] Image readPng(const std::filesystem::path& path);
 
-/// Replaces the file.
+/// Replaces the file. Throws InputError if it cannot be written.
 void savePng(const std::string& path, const Image& image);
 
 /// How much two pictures differ, as an eye would say: drivers may round in their own way, and move an edge by
