@@ -3,8 +3,8 @@
 // The look of each method: the same on all pages, in drawings in files (draw), and in the replay.
 
 // A name, or its beginning, with its colour (--series-0 and so on, of page.css) and its shape. The longest
-// beginning counts. Blue, sky blue, green and grey are ours or another program's; vermilion and orange are
-// Bullet's, purple is the paper's. The shape belongs to the whole name; series whose names go on have others.
+// beginning counts. Blue and sky blue are ours, vermilion and orange Bullet's, purple the paper's; green and grey are
+// for methods of several programs. The shape belongs to the whole name; series whose names go on have others.
 const METHOD_LOOKS = {
     // Broadphases, by the names of the command line and by their classes.
     hash: [0, "circle"],

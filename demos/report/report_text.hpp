@@ -47,7 +47,7 @@ struct Console;
 /// overloadSentence().
 [[nodiscard]] std::vector<std::string> cautionsOf(const Provenance& provenance);
 
-/// A line with versions, compiler and processor, and cautionsOf().
+/// Two lines with versions, compiler and processor, and cautionsOf().
 void printProvenance(const Provenance& provenance, std::ostream& out);
 
 // --- In lines that fit the console ---------------------------------------------------------------
@@ -55,7 +55,7 @@ void printProvenance(const Provenance& provenance, std::ostream& out);
 void printProvenance(const Provenance& provenance, const Console& console);
 void printSentences(const std::vector<std::string>& sentences, const Console& console);
 
-/// The last line, which programs look for: whole in a file or a pipe.
+/// The verdict, which programs look for: whole in a file or a pipe.
 void printVerdict(const std::string& verdict, const Console& console);
 
 }  // namespace hashphase::demos
