@@ -8,6 +8,7 @@
 #include <demos/console/result_file.hpp>
 #include <demos/report/time_limit.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/other_programs.hpp>
 #include <demos/system/process.hpp>
 
 #include <CLI/CLI.hpp>
@@ -124,7 +125,9 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
     ResultFile page(options.folder.empty() ? "" : options.folder + "/accuracy.html");
     pinToThisCore();
     AccuracyReport report{options.effort, {}, {}, gatherProvenance(console.commandLine)};
+    const OtherPrograms others;
     run(chosen, options, report, console);
+    report.provenance.coresOfOthers = others.cores();
 
     printReport(report, options.isVerbose, console);
     if (!options.folder.empty()) {

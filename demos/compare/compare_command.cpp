@@ -11,6 +11,7 @@
 #include <demos/scenes/box_scene.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/scenes/world_scenes.hpp>
+#include <demos/system/other_programs.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -195,6 +196,7 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     CompareReport report;
     report.scene = opened.name;
     report.provenance = gatherProvenance(console.commandLine);
+    const OtherPrograms others;
     const int frames = framesToRun(options, opened);
     ResultFile json(options.jsonFile);
     ResultFile csv(options.csvFile);
@@ -213,6 +215,7 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
         opened.trial = nullptr;  // makes room for the same worlds again
         profileSteps(*profiled, settings, end, contestants, measured);
     }
+    report.provenance.coresOfOthers = others.cores();
     const bool isStopped = end.framesDone < frames || isInterrupted();
     measured.add("run",
                  {{"scene", opened.name},

@@ -10,6 +10,7 @@
 #include <demos/report/json_values.hpp>
 #include <demos/report/report_text.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/other_programs.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -170,12 +171,14 @@ int runEffects(const EffectsOptions& options, Console& console, std::size_t (*al
     ResultFile csv(options.csvFile);
     ResultFile html(options.htmlFile);
 
-    const Provenance provenance = gatherProvenance(console.commandLine);
+    Provenance provenance = gatherProvenance(console.commandLine);
+    const OtherPrograms others;
     PricingSettings settings;
     settings.scene = name;
     settings.frames = file.scene.frames;
     settings.allocationCount = allocationCount;
     Measurements measured = measure(file, settings, options, console);
+    provenance.coresOfOthers = others.cores();
     const Findings findings = effectsFindings(measured);
     printReport(findings, provenance, console);
     json.write([&](std::ostream& out) { writeJson(findings, provenance, file, out); });

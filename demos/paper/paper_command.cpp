@@ -6,6 +6,7 @@
 #include <demos/console/result_file.hpp>
 #include <demos/paper/paper.hpp>
 #include <demos/report/time_limit.hpp>
+#include <demos/system/other_programs.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -62,7 +63,10 @@ int runPaper(const PaperOptions& options, Console& console) {
         };
         return measurePaper(plan, watcher);
     };
-    PaperReport report(plan, measure(), std::move(provenance));
+    const OtherPrograms others;
+    Measurements measured = measure();
+    provenance.coresOfOthers = others.cores();
+    PaperReport report(plan, std::move(measured), std::move(provenance));
     printReport(report, options.showMilliseconds, console);
     json.write([&report](std::ostream& out) { writeJson(report, out); });
     csv.write([&report](std::ostream& out) { writeCsv(report, out); });

@@ -107,7 +107,7 @@ Json provenanceJson(const Provenance& provenance) {
             {"operatingSystem", provenance.operatingSystem},
             {"cpu", provenance.cpu},
             {"cores", provenance.cores},
-            {"loadAverage", orNull(provenance.loadAverage)},
+            {"coresOfOthers", orNull(provenance.coresOfOthers)},
             {"commandLine", provenance.commandLine}};
 }
 

@@ -11,6 +11,7 @@
 
 #include <btBulletCollisionCommon.h>
 
+#include <array>
 #include <cstdio>
 #include <thread>
 
@@ -55,7 +56,6 @@ Provenance gatherProvenance(const std::string& commandLine) {
     provenance.operatingSystem = operatingSystem();
     provenance.cpu = processorName();
     provenance.cores = std::thread::hardware_concurrency();
-    provenance.loadAverage = loadAverage();
     provenance.commandLine = commandLine;
     return provenance;
 }

@@ -3,7 +3,6 @@
 
 // What must be known to trust a measurement, or to repeat it.
 
-#include <array>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -31,10 +30,12 @@ struct Provenance {
     std::string operatingSystem;  // "Linux 6.1.0-18-amd64 x86_64"
     std::string cpu;
     unsigned cores = 0;
-    std::optional<std::array<double, 3>> loadAverage;  // over 1, 5, 15 minutes
+    std::optional<double>
+        coresOfOthers;  // that other programs used meanwhile: OtherPrograms::cores()
     std::string commandLine;
 };
 
+/// All that is known when measuring begins.
 [[nodiscard]] Provenance gatherProvenance(const std::string& commandLine);
 
 /// The time in UTC as "2025-11-29T13:05:07Z".

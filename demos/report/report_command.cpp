@@ -6,6 +6,7 @@
 #include <demos/report/page.hpp>
 #include <demos/report/report_text.hpp>
 #include <demos/report/time_limit.hpp>
+#include <demos/system/other_programs.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -61,9 +62,11 @@ public:
         page_.title = "hashphase, measured";
         page_.introduction = kReportIntroduction;
         page_.provenance = gatherProvenance(console_.commandLine);
+        const OtherPrograms others;
         for (std::size_t i = 0; i < parts_.size(); ++i) {
             runPart(i);
         }
+        page_.provenance.coresOfOthers = others.cores();
         conclude();
         return std::move(page_);
     }

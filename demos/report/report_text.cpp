@@ -80,28 +80,29 @@ DataTable provenanceTable(const Provenance& provenance) {
                      {"processor", provenance.cpu},
                      {"instructions that hashphase uses", provenance.instructionSet},
                      {"cores", std::to_string(provenance.cores)}}};
-    if (provenance.loadAverage) {
-        const auto& [one, five, fifteen] = *provenance.loadAverage;
-        table.add({"load over 1, 5, 15 minutes before",
-                   fixed(one, 2) + ", " + fixed(five, 2) + ", " + fixed(fifteen, 2)});
+    if (provenance.coresOfOthers) {
+        table.add(
+            {"cores that other programs used meanwhile", fixed(*provenance.coresOfOthers, 2)});
     }
     table.add({"command", provenance.commandLine});
     return table;
 }
 
 std::string overloadText(const Provenance& provenance) {
-    const auto& load = provenance.loadAverage;
-    return load && load->front() > provenance.cores
-               ? "load " + fixed(load->front(), 1) + " on " + std::to_string(provenance.cores) +
-                     " cores"
+    // Programs that measure need one core or two, and memory. A desktop at rest, and another program on one of many
+    // cores, hardly lengthen times; a quarter of a core on a machine of two does.
+    constexpr double kMostShare = 0.125;
+    const double others = provenance.coresOfOthers.value_or(0);
+    return others > kMostShare * provenance.cores
+               ? "Other programs used " + fixed(others, 1) + " of " +
+                     std::to_string(provenance.cores) +
+                     (provenance.cores == 1 ? " core" : " cores") + " while this ran"
                : std::string();
 }
 
 std::string overloadSentence(const Provenance& provenance) {
     const std::string overload = overloadText(provenance);
-    return overload.empty() ? overload
-                            : "Other programs kept the processor busy (" + overload +
-                                  "), so the times are too long.";
+    return overload.empty() ? overload : overload + ": the times may be too long.";
 }
 
 std::vector<std::string> cautionsOf(const Provenance& provenance) {

@@ -37,10 +37,10 @@ struct Console;
 /// All of it, a row each.
 [[nodiscard]] DataTable provenanceTable(const Provenance& provenance);
 
-/// "load 3.7 on 2 cores", where programs wanted more cores than there are; else empty.
+/// "Other programs used 0.8 of 2 cores while this ran", if that is more than an eighth of the cores; else empty.
 [[nodiscard]] std::string overloadText(const Provenance& provenance);
 
-/// A sentence that holds overloadText(); empty where that is.
+/// overloadText() and what follows from it, as a sentence; empty where that is.
 [[nodiscard]] std::string overloadSentence(const Provenance& provenance);
 
 /// Why times are not to be trusted, a sentence each: of a build for tests one that begins "Times mean little", and

@@ -12,6 +12,7 @@
 #include <demos/report/time_limit.hpp>
 #include <demos/stability/bullet_subject.hpp>
 #include <demos/stability/isolation.hpp>
+#include <demos/system/other_programs.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -274,8 +275,10 @@ int runStability(const StabilityOptions& options, std::span<const BroadphaseKind
     ResultFile json(options.jsonFile);
     ResultFile csv(options.csvFile);
     ResultFile html(options.htmlFile);
-    const Provenance provenance = gatherProvenance(console.commandLine);
+    Provenance provenance = gatherProvenance(console.commandLine);
+    const OtherPrograms others;
     Measurements measured = runCases(cases, kinds, options, console);
+    provenance.coresOfOthers = others.cores();
     const Findings findings = findingsOf(kStabilityDeclaration, measured);
 
     printReport(findings, provenance, console);

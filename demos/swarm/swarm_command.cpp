@@ -12,6 +12,7 @@
 #include <demos/swarm/swarm_report.hpp>
 #include <demos/swarm/swarm_run.hpp>
 #include <demos/system/interruption.hpp>
+#include <demos/system/other_programs.hpp>
 #include <demos/system/process.hpp>
 
 #include <CLI/CLI.hpp>
@@ -241,10 +242,25 @@ int report(const SwarmResult& result, const std::optional<SingleResult>& alone,
     return difference.empty() ? kExitOk : kExitCheckFailed;
 }
 
+/// The other ranks on this machine are no other programs. All ranks call it together.
+std::optional<ProcessorTimes> timesOfAllRanks() {
+    std::optional<ProcessorTimes> times = processorTimes();
+    double own = times ? times->own : 0;
+    MPI_Comm here = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);
+    MPI_Allreduce(MPI_IN_PLACE, &own, 1, MPI_DOUBLE, MPI_SUM, here);
+    MPI_Comm_free(&here);
+    if (times) {
+        times->own = own;
+    }
+    return times;
+}
+
 int runRank(const SwarmOptions& options, SwarmKind kind, Console& console, const MpiSession& mpi) {
     const bool isFirst = mpi.rank == 0;
     ResultFile csv(isFirst ? options.csvFile : std::string());
-    const Provenance provenance = gatherProvenance(console.commandLine);
+    Provenance provenance = gatherProvenance(console.commandLine);
+    const OtherPrograms others(timesOfAllRanks);
     const SwarmScene scene(kind, options.objects, options.seed);
     if (isFirst) {
         console.out << withThousands(options.objects) << " spheres (" << options.scene << "), "
@@ -257,6 +273,7 @@ int runRank(const SwarmOptions& options, SwarmKind kind, Console& console, const
         alone = runToCompare(scene, options, console);
     }
     meet(MPI_COMM_WORLD);
+    provenance.coresOfOthers = others.cores();
     return isFirst ? report(result, alone, provenance, csv, console.out) : kExitOk;
 }
 

@@ -3,10 +3,8 @@
 
 // What the system knows of a program while it runs: process_posix.cpp, process_windows.cpp.
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +38,5 @@ void pinToThisCore() noexcept;
 
 /// Its name, release and kind of machine: "Linux 6.1.0-18-amd64 x86_64".
 [[nodiscard]] std::string operatingSystem();
-
-/// How many threads were at work, over 1, 5 and 15 minutes.
-[[nodiscard]] std::optional<std::array<double, 3>> loadAverage() noexcept;
 
 }  // namespace hashphase::demos

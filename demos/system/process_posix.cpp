@@ -87,10 +87,4 @@ std::string operatingSystem() {
                : std::string(system.sysname) + ' ' + system.release + ' ' + system.machine;
 }
 
-std::optional<std::array<double, 3>> loadAverage() noexcept {
-    std::array<double, 3> load{};
-    const auto count = static_cast<int>(load.size());
-    return getloadavg(load.data(), count) == count ? std::optional(load) : std::nullopt;
-}
-
 }  // namespace hashphase::demos

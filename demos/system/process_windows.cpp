@@ -96,8 +96,4 @@ std::string operatingSystem() {
     return "Windows";
 }
 
-std::optional<std::array<double, 3>> loadAverage() noexcept {
-    return std::nullopt;
-}
-
 }  // namespace hashphase::demos

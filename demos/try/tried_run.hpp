@@ -31,7 +31,7 @@ struct Trial {
     std::string commandLine;
     TriedProgram program;
     std::vector<TriedRun> runs;
-    Provenance provenance;  // after them: how busy the machine was
+    Provenance provenance;
 };
 
 struct TriedRunSettings {

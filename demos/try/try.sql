@@ -250,12 +250,11 @@ SELECT ifnull('With hashphase a step takes ' || ms(h.step) || ' ms instead of ' 
               'The program has made no steps: pairs were calculated by hand.')
 FROM bullet AS b, ours AS h
 UNION ALL
-SELECT ifnull('Other programs kept the processor busy (' || overload || ')',
-              'Other programs were busy, or the program waited for something')
+SELECT ifnull(overload, 'Other programs were busy, or the program waited for something')
        || CASE WHEN min(b.share, h.share) >= 0.9
                    THEN iif(on_threads, ', which lengthens the times on the wall.',
-                            ', which these times are without.')
-               ELSE ': the calling thread had it for ' || b.share_text || ' of the time with Bullet''s, and for '
+                            ', but the times above leave waiting out.')
+               ELSE ': the calling thread ran for ' || b.share_text || ' of the time with Bullet''s, and for '
                     || h.share_text || ' with hashphase. '
                     || CASE WHEN on_threads THEN 'Trust the times of updateAabbs and calculateOverlappingPairs, '
                                                  || 'and not those on the wall.'

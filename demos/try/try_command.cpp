@@ -6,6 +6,7 @@
 #include <demos/console/result_file.hpp>
 #include <demos/scenes/input_error.hpp>
 #include <demos/system/interruption.hpp>
+#include <demos/system/other_programs.hpp>
 #include <demos/try/try_report.hpp>
 
 #include <CLI/CLI.hpp>
@@ -185,11 +186,13 @@ int runTry(const TryOptions& options, Console& console) {
     trial.commandLine = joined(console.rest, " ");
     trial.program = inspectProgram(findProgram(console.rest.front()), bullets, options.precision);
     ResultFile json(options.jsonFile);
+    const OtherPrograms others;
     runAll(options, trial, console);
     if (trial.runs.empty()) {
         throw Interrupted();
     }
     trial.provenance = gatherProvenance(console.commandLine);
+    trial.provenance.coresOfOthers = others.cores();
     TrialReport report = reportOf(trial);
     printTrial(report, console.out);
     json.write([&](std::ostream& out) { writeTrialJson(report, out); });

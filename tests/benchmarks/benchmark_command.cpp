@@ -7,6 +7,7 @@
 #include <demos/console/result_file.hpp>
 #include <demos/report/time_limit.hpp>
 #include <demos/scenes/input_error.hpp>
+#include <demos/system/other_programs.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -253,6 +254,7 @@ int runBenchmarks(const BenchmarkOptions& options, const std::vector<ContestantK
     report.settings.frames = options.frames.value_or(report.settings.frames);
     report.settings.seed = options.seed;
     report.provenance = demos::gatherProvenance(console.commandLine);
+    const demos::OtherPrograms others;
     report.casesAsked = cases.size();
     demos::ResultFile json(options.jsonFile);
 
@@ -262,6 +264,7 @@ int runBenchmarks(const BenchmarkOptions& options, const std::vector<ContestantK
         console.out << report.stopped << " before the first case.\n";
         return demos::kExitCheckFailed;
     }
+    report.provenance.coresOfOthers = others.cores();
     const bool isExact = printSummary(report, console.out);
     json.write([&report](std::ostream& file) { writeJson(report, file); });
     return isExact ? demos::kExitOk : demos::kExitCheckFailed;

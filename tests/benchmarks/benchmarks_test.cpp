@@ -103,6 +103,20 @@ std::string summaryOf(Measurements& measured) {
     return out.str();
 }
 
+// Not with what is printed first, when it is unknown.
+TEST(Summary, TellsHowMuchOfTheProcessorOtherProgramsUsed) {
+    BenchmarkReport report;
+    report.measured = measureFakes({fakeKind("good", true, leaveAlone)});
+    report.provenance.cores = 2;
+    report.provenance.coresOfOthers = 1.5;
+    std::ostringstream out;
+    printCase(report, 1, out);
+    printSummary(report, out);
+    EXPECT_NE(out.str().find("\nOther programs used 1.5 of 2 cores while this ran: "),
+              std::string::npos)
+        << out.str();
+}
+
 TEST(AnswerAudit, CountsWhatIsMissingExtraAndTwice) {
     const auto auditOf = [](std::vector<Answer> answers, const std::vector<Answer>& exact) {
         const FrameAudit audit = auditAnswers(answers, exact);

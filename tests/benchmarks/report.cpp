@@ -92,6 +92,10 @@ bool printSummary(BenchmarkReport& report, std::ostream& out) {
         out << report.stopped << ": " << report.casesAsked - done << " of " << report.casesAsked
             << " cases are left out.\n";
     }
+    if (const std::string overload = demos::overloadSentence(report.provenance);
+        !overload.empty()) {
+        out << overload << '\n';
+    }
     out << findings.verdict << '\n';
     return findings.holds == true;
 }

@@ -168,17 +168,18 @@ TEST(Page, SaysThatTimesMeanLittleUnlessItWasBuiltForMeasuring) {
     EXPECT_EQ(count(release, "<td>assertions</td><td>off</td>"), 1U);
 }
 
-TEST(Page, SaysOnTopThatOtherProgramsKeptTheProcessorBusy) {
+TEST(Page, SaysOnTopHowMuchOfTheProcessorOtherProgramsUsed) {
     const std::string busy =
-        "Other programs kept the processor busy (load 3.7 on 2 cores), so the "
-        "times are too long.";
+        "Other programs used 0.8 of 2 cores while this ran: the times may be too long.";
     Page page = samplePage();
     page.provenance.cores = 2;
-    page.provenance.loadAverage = {2, 0.5, 0.5};
-    EXPECT_EQ(count(withoutScripts(page), "kept the processor busy"), 0U);
-    page.provenance.loadAverage = {3.7, 0.5, 0.5};
+    EXPECT_EQ(count(withoutScripts(page), "ther programs"), 0U) << "unknown";
+    page.provenance.coresOfOthers = 0.25;
+    EXPECT_EQ(count(withoutScripts(page), "Other programs"), 0U) << "an eighth of the cores";
+    page.provenance.coresOfOthers = 0.8;
     const std::string html = withoutScripts(page);
     EXPECT_LT(html.find(busy), html.find("</header>"));
+    EXPECT_EQ(count(html, "<td>cores that other programs used meanwhile</td><td>0.80</td>"), 1U);
 
     Page joined = samplePage();
     joined.parts = {page, samplePage()};
@@ -189,6 +190,7 @@ TEST(Page, SaysOnTopThatOtherProgramsKeptTheProcessorBusy) {
     std::ostringstream text;
     printProvenance(page.provenance, text);
     EXPECT_EQ(count(text.str(), busy), 1U) << "on the terminal, too";
+    EXPECT_EQ(provenanceJson(page.provenance)["coresOfOthers"], 0.8);
 }
 
 TEST(Page, FoldsUpTheSectionsOfItsPartsAndNoOthers) {

@@ -3,6 +3,7 @@
 #include <demos/report/page.hpp>
 #include <demos/report/report_command.hpp>
 #include <demos/report/report_text.hpp>
+#include <demos/system/other_programs.hpp>
 #include <tests/demos/sample_experiments.hpp>
 #include <tests/demos/typed.hpp>
 #include <tests/support/temporary_folder.hpp>
@@ -154,23 +155,33 @@ TEST(JoinedReport, DoesNotHoldWhereNothingWasChecked) {
     EXPECT_EQ(none.out.find("hold"), std::string::npos) << none.out;
 }
 
-TEST(JoinedReport, SaysDuringWhichPartOtherProgramsKeptTheProcessorBusy) {
+TEST(JoinedReport, SaysDuringWhichPartOtherProgramsUsedTheProcessor) {
     std::vector<ReportPart> parts = twoParts();
     parts[1].command.run = [run = parts[1].command.run](Console& console) {
         const auto take = console.takePage;
         console.takePage = [&take](Page page) {
             page.provenance.cores = 2;
-            page.provenance.loadAverage = {5.25, 1, 1};
+            page.provenance.coresOfOthers = 1.5;
             take(page);
         };
         return run(console);
     };
     const ReportSeen seen = runReport(parts, {});
-    const std::string busy = "Other programs kept the processor busy (load 5.2 on 2 cores)";
+    const std::string busy = "Other programs used 1.5 of 2 cores while this ran";
     EXPECT_TRUE(holds(seen.out, "beta: Verdict of beta.\n" + busy));
     EXPECT_GT(seen.html.find(busy), seen.html.find("<h2>Page of beta</h2>"));
     EXPECT_LT(seen.html.find(busy),
               seen.html.find("</article>", seen.html.find("Page of beta</h2>")));
+}
+
+TEST(JoinedReport, TellsHowMuchOfTheProcessorOtherProgramsUsedMeanwhile) {
+    std::vector<ReportPart> parts = twoParts();
+    parts[0].command.run = [](Console&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(501));
+        return int{kExitOk};
+    };
+    EXPECT_EQ(holds(runReport(parts, {}).html, "<td>cores that other programs used meanwhile</td>"),
+              processorTimes().has_value());
 }
 
 TEST(JoinedReport, GoesOnAfterAPartThatThrows) {

@@ -239,8 +239,7 @@ TEST_P(TryReport, Says) {
     for (const std::string& line : block.given) {
         if (line.starts_with("machine")) {
             std::istringstream words(line.substr(line.find(' ')));
-            trial.provenance.loadAverage.emplace();
-            words >> trial.provenance.cores >> trial.provenance.loadAverage->front();
+            words >> trial.provenance.cores >> trial.provenance.coresOfOthers.emplace();
         } else {
             trial.runs.push_back(runOf(line));
         }
