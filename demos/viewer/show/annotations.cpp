@@ -4,7 +4,10 @@
 #include <demos/console/format.hpp>
 #include <demos/viewer/draw/palette.hpp>
 
+#include <algorithm>
+#include <functional>
 #include <optional>
+#include <utility>
 
 namespace hashphase::demos {
 namespace {
@@ -72,10 +75,32 @@ std::vector<Label> zoneLabels(const Session& session) {
     std::vector<Label> labels;
     for (const InterestZone& zone : session.stage->interestZones()) {
         if (const auto middle = onScreen(session, zone.centre)) {
-            labels.push_back({*middle, bodiesText(zone.bodyCount)});
+            labels.push_back({*middle, bodiesText(zone.bodyCount), zone.radius});
         }
     }
     return labels;
+}
+
+std::vector<Label> placedApart(std::vector<Label> labels,
+                               const std::function<Eigen::Vector2f(const std::string&)>& sizeOf) {
+    std::ranges::stable_sort(labels, std::greater<>(), &Label::radius);
+    std::vector<Label> placed;
+    std::vector<Eigen::AlignedBox2f> taken;
+    for (Label& label : labels) {
+        const Eigen::Vector2f size = sizeOf(label.text);
+        const Eigen::Vector2f middle = label.middle;
+        for (const float lines : {0.0F, 1.0F, -1.0F}) {
+            label.middle.y() = middle.y() + lines * (size.y() + 1);
+            const Eigen::AlignedBox2f box(label.middle - size / 2, label.middle + size / 2);
+            if (std::ranges::none_of(taken,
+                                     [&](const auto& other) { return box.intersects(other); })) {
+                taken.push_back(box);
+                placed.push_back(std::move(label));
+                break;
+            }
+        }
+    }
+    return placed;
 }
 
 }  // namespace hashphase::demos

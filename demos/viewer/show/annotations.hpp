@@ -6,6 +6,7 @@
 #include <demos/viewer/draw/picture.hpp>
 #include <demos/viewer/session/session.hpp>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,15 @@ struct Badge {
 struct Label {
     Eigen::Vector2f middle;  // [pixels]
     std::string text;
+    float radius = 0;  // of the zone [m]
 };
 
 /// How many bodies each zone of interest holds, at its centre, if that is in the picture.
 [[nodiscard]] std::vector<Label> zoneLabels(const Session& session);
+
+/// The same where none overlaps another: one that would lie on that of a larger zone, or of an earlier one as large,
+/// is a line lower, else a line higher, and left out if these places are taken, too. Sizes are in pixels.
+[[nodiscard]] std::vector<Label> placedApart(
+    std::vector<Label> labels, const std::function<Eigen::Vector2f(const std::string&)>& sizeOf);
 
 }  // namespace hashphase::demos

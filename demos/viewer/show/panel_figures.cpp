@@ -185,12 +185,16 @@ void showZones(const Session& session) {
 
 void showZoneLabels(const Session& session) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    for (const Label& label : zoneLabels(session)) {
-        const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
-        const ImVec2 at{label.middle.x() - size.x / 2, label.middle.y() - size.y / 2};
-        list.AddRectFilled({at.x - 3, at.y - 1}, {at.x + size.x + 3, at.y + size.y + 1},
+    const auto sizeOf = [](const std::string& text) {
+        const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+        return Eigen::Vector2f(size.x + 6, size.y + 2);  // with a margin
+    };
+    for (const Label& label : placedApart(zoneLabels(session), sizeOf)) {
+        const Eigen::Vector2f half = sizeOf(label.text) / 2;
+        const ImVec2 at{label.middle.x() - half.x(), label.middle.y() - half.y()};
+        list.AddRectFilled(at, {label.middle.x() + half.x(), label.middle.y() + half.y()},
                            ImGui::GetColorU32(ImGuiCol_WindowBg, 0.8F));
-        list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), label.text.c_str());
+        list.AddText({at.x + 3, at.y + 1}, ImGui::GetColorU32(ImGuiCol_Text), label.text.c_str());
     }
 }
 

@@ -107,5 +107,26 @@ TEST(ZoneLabels, AreAtTheCentresThatThePictureShows) {
     }
 }
 
+TEST(ZoneLabels, MakeRoomForThoseOfLargerZones) {
+    const auto sizeOf = [](const std::string& text) {
+        return Eigen::Vector2f(10 * static_cast<float>(text.size()), 14);
+    };
+    const std::vector<Label> labels = placedApart({{{100, 100}, "below", 5},
+                                                   {{100, 100}, "large", 9},
+                                                   {{120, 95}, "above", 5},
+                                                   {{110, 105}, "none", 5},
+                                                   {{400, 100}, "apart", 1}},
+                                                  sizeOf);
+    ASSERT_EQ(labels.size(), 4U);
+    const auto expectLabel = [&](std::size_t i, const std::string& text, float x, float y) {
+        EXPECT_EQ(labels[i].text, text);
+        EXPECT_EQ(labels[i].middle, Eigen::Vector2f(x, y)) << text;
+    };
+    expectLabel(0, "large", 100, 100);
+    expectLabel(1, "below", 100, 115);
+    expectLabel(2, "above", 120, 80);
+    expectLabel(3, "apart", 400, 100);
+}
+
 }  // namespace
 }  // namespace hashphase::demos
