@@ -19,6 +19,9 @@ const valuesOf = ({ data }, column) => {
 
 const titleOf = ({ data }, column) => data.columns.find((each) => each.name === column).title || column;
 
+// Significant digits of its numbers, as tables have them.
+const digitsOf = ({ data }, column) => data.columns.find((each) => each.name === column).digits;
+
 // Fields of Vega-Lite, which reads some letters as paths.
 const fieldOf = (column) => column.replace(/\W/g, "_");
 const placeOf = (column) => `at ${fieldOf(column)}`;

@@ -42,9 +42,6 @@ const CONFIG = (() => {
     };
 })();
 
-// Significant digits of a number under that title, as tables have them: times vary by more than a thousandth.
-const digitsOf = (title) => (/\[(ms|us|ns|s|times)\b|times as fast/.test(title) ? 3 : 4);
-
 const seriesOf = (chart) => (chart.series ? distinct(valuesOf(chart, chart.series).map(textOf)) : []);
 
 // --- How series look ------------------------------------------------------------------------------
@@ -135,9 +132,9 @@ function theoryLayer(chart, columnX, field, along, colour, write) {
     });
 }
 
-const cellLayers = (shade, tooltip, gradientLength) => {
+// `digits` are significant ones of the numbers in the cells.
+const cellLayers = (shade, digits, tooltip, gradientLength) => {
     const value = `datum['${shade.channel.field}']`;
-    const digits = digitsOf(shade.channel.title);
     const { axis, scale, ...channel } = shade.channel;
     return [
         {
@@ -259,11 +256,11 @@ function chartSpec(chart, looks, width = WIDTH) {
     const rows = data.rows.map((row) =>
         Object.fromEntries(data.columns.map(({ name }, i) =>
             [fieldOf(name), named.has(name) ? named.get(name)(textOf(row[i])) : row[i]])));
-    const tooltip = data.columns.map(({ name, title }) => ({
+    const tooltip = data.columns.map(({ name, title, digits }) => ({
         field: fieldOf(name),
         title: title || name,
         ...(rows.some((row) => typeof row[fieldOf(name)] === "string")
-            ? { type: "nominal" } : { type: "quantitative", format: `,.${digitsOf(title || name)}~g` }),
+            ? { type: "nominal" } : { type: "quantitative", format: `,.${digits}~g` }),
     }));
 
     const isDense = mark === "line" && rows.length > Math.max(series.length, 1) * 40;
@@ -300,7 +297,7 @@ function chartSpec(chart, looks, width = WIDTH) {
         layer: [
             chart.front ? frontLayer(rows, fieldOf(x.column), fieldOf(y.column), inLegend(FRONT)) : [],
             {
-                cell: () => cellLayers(shade, tooltip, Math.min(300, lengths.across)),
+                cell: () => cellLayers(shade, digitsOf(chart, shade.column), tooltip, Math.min(300, lengths.across)),
                 bar: () => bars,
                 line: () => lines,
                 point: () => [],

@@ -46,15 +46,6 @@ std::string signedThousands(double number) {
     return number < 0 ? "-" + digits : digits;
 }
 
-bool isOfTimes(const DataColumn& column) {
-    constexpr std::array<std::string_view, 9> kUnits{
-        "[ms]", "[ms ", "[us]", "[ns]", "[ns ", "[ns/", "[s]", "[times ", "times as fast"};
-    const std::string& title = titleOf(column);
-    return std::any_of(kUnits.begin(), kUnits.end(), [&](std::string_view unit) {
-        return title.find(unit) != std::string::npos;
-    });
-}
-
 // --- Text ----------------------------------------------------------------------------------------
 
 using Row = std::vector<std::string>;
@@ -160,6 +151,16 @@ const std::string& titleOf(const DataColumn& column) {
     return column.title.empty() ? column.name : column.title;
 }
 
+int digitsOf(const DataColumn& column) {
+    constexpr std::array<std::string_view, 9> kUnits{
+        "[ms]", "[ms ", "[us]", "[ns]", "[ns ", "[ns/", "[s]", "[times ", "times as fast"};
+    const std::string& title = titleOf(column);
+    const bool isOfTimes = std::any_of(kUnits.begin(), kUnits.end(), [&](std::string_view unit) {
+        return title.find(unit) != std::string::npos;
+    });
+    return isOfTimes ? 3 : 4;
+}
+
 std::string valueText(const Value& value) {
     if (const std::string* text = std::get_if<std::string>(&value)) {
         return *text;
@@ -180,7 +181,7 @@ std::string valueText(const Value& value) {
 
 std::string cellText(const Value& value, const DataColumn& column) {
     const double* number = std::get_if<double>(&value);
-    if (number == nullptr || !std::isfinite(*number) || *number == 0 || !isOfTimes(column)) {
+    if (number == nullptr || !std::isfinite(*number) || *number == 0 || digitsOf(column) > 3) {
         return valueText(value);
     }
     // The power of ten of the first digit, once rounded: 9.999 is 10.0.

@@ -38,8 +38,11 @@ struct DataTable {
 /// As people read it: four significant digits, thousands separated, "-" for nothing.
 [[nodiscard]] std::string valueText(const Value& value);
 
-/// As people read it under that title. Of times, and of ratios of them ("[ms]", "[ns/object]", "times as fast"), no
-/// more than three digits are worth anything: "0.120", "12.0", "1,230".
+/// Significant digits that people read of numbers under that title: four. Of times, and of ratios of them ("[ms]",
+/// "[ns/object]", "times as fast"), no more than three are worth anything.
+[[nodiscard]] int digitsOf(const DataColumn& column);
+
+/// As people read it under that title, with digitsOf(): of times "0.120", "12.0", "1,230".
 [[nodiscard]] std::string cellText(const Value& value, const DataColumn& column);
 
 /// Without the columns that have nothing in any row.

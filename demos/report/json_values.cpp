@@ -76,6 +76,9 @@ Json chartJson(const Chart& chart) {
         json[key] = words;
     }
     json["data"] = tableJson(chart.data);
+    for (std::size_t i = 0; i < chart.data.columns.size(); ++i) {
+        json["data"]["columns"][i]["digits"] = digitsOf(chart.data.columns[i]);
+    }
     return json;
 }
 

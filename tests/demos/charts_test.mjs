@@ -28,7 +28,10 @@ const palettes = (() => {
 })();
 
 const chartOf = (declared, columns, rows) =>
-    ({ title: "t", mark: "point", ...declared, data: { columns: columns.map((name) => ({ name, title: "" })), rows } });
+    ({
+        title: "t", mark: "point", ...declared,
+        data: { columns: columns.map((name) => ({ name, title: "", digits: name === "ms" ? 3 : 4 })), rows },
+    });
 const yChart = (y, ...ys) => chartOf({ x: "x", y }, ["x", "y"], ys.map((value, i) => [i + 1, value]));
 const ofSeries = (...names) =>
     chartOf({ x: "x", y: "x", series: "m" }, ["x", "m"], names.map((name) => [1, name]));
@@ -323,4 +326,14 @@ test("Columns that Vega would read as paths are columns", async () => {
     const [one, other] = await drawn(chart, 0);
     assert.deepEqual(one.tooltip, { x: "1", "method.of[x]": "m" });
     assert.deepEqual([one.fill, other.fill], ["var(--series-0)", "var(--series-1)"]);
+});
+
+test("Numbers in cells and beside points have the digits that are declared", async () => {
+    const cells = (value) =>
+        chartOf({ x: "x names", y: "y names", shade: value, mark: "cell" }, ["x", "y", value], [["a", "b", 12.3456]]);
+    assert.deepEqual((await drawn(cells("n"), 1)).map(({ text }) => text), ["12.35"]);
+    assert.deepEqual((await drawn(cells("ms"), 1)).map(({ text }) => text), ["12.3"]);
+    const points = chartOf({ x: "x", y: "ms" }, ["x", "ms"], [[1, 1]]);
+    const { tooltip } = chartSpec(points, looksOf([points])).layer.at(-1).encoding;
+    assert.deepEqual(tooltip.map(({ format }) => format), [",.4~g", ",.3~g"]);
 });

@@ -120,6 +120,8 @@ TEST(Page, HandsChartsAsDeclaredToWhatDrawsThem) {
     const Json points = chartJson(sampleCharts()[1]);
     EXPECT_EQ(points["y"], "missed log0");
     EXPECT_EQ(points["data"]["columns"][1]["title"], "time [ms a frame]");
+    EXPECT_EQ(points["data"]["columns"][1]["digits"], 3);
+    EXPECT_EQ(points["data"]["columns"][2]["digits"], 4);
     EXPECT_EQ(points["data"]["rows"].size(), sampleCharts()[1].data.rows.size());
     EXPECT_TRUE(points["data"]["rows"].back()[1].is_null()) << "not timed";
 }
