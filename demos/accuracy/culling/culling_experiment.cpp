@@ -242,7 +242,7 @@ Findings findCulling(const CullingPlan& plan, std::uint64_t seed,
 Experiment cullingExperiment() {
     return {"P4",
             "Culling",
-            "How many visible objects are lost, and how many are drawn in vain?",
+            "How many visible objects are lost, and how many objects are drawn needlessly?",
             3,
             20,
             [](const Effort& effort, const TellProgress& tell) {

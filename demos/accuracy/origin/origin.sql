@@ -8,8 +8,8 @@ R"sql(-- SPDX-License-Identifier: Zlib
 CREATE VIEW texts AS
 SELECT thousands(boxes) || ' moving boxes of 0.5 to 2 m within 20 m, and ' || thousands(rays)
        || ' rays, moved away from the origin by powers of two along all three axes; coordinates are '
-       || 'multiples of 1/1,024 m, half of them of 1/16 m, so that many boxes just touch; 60 frames, 6 of '
-       || 'them compared with integer arithmetic; seed ' || seed AS scene
+       || 'multiples of 1/1,024 m, for half of the boxes of 1/16 m, so that many boxes just touch; 60 frames, '
+       || '6 frames compared with integer arithmetic; seed ' || seed AS scene
 FROM plan;
 
 -- What a method answered at a distance, with the time of a frame.
@@ -52,22 +52,22 @@ SELECT offset AS "offset_m: distance from the origin [m]", method, pairs AS "pai
        missed_hits_percent AS "missed_hits_percent: missed hits [%]",
        false_hits_percent AS "false_hits_percent: false hits [% of the true hits]",
        frame_ms AS "frame_ms: frame [ms]",
-       100 * (times - 1) AS "overhead_percent: longer than float at the origin [%]"
+       100 * (times - 1) AS "overhead_percent: extra time over float at the origin [%]"
 FROM did ORDER BY point, number;
 
 CREATE VIEW shown_rests AS
 SELECT offset AS "offset_m: distance from the origin [m]", method,
-       position_error AS "position_error_m: farthest from the place of rest [m]",
+       position_error AS "position_error_m: largest position error [m]",
        step AS "settle_step: settled after [steps]",
-       later AS "settle_difference: steps later than at the origin", step_ms AS "step_ms: step [ms]"
+       later AS "settle_difference: settled later than at the origin by [steps]", step_ms AS "step_ms: step [ms]"
 FROM rested ORDER BY point, number;
 
 /* {"settings": "scene, truth, methods, frames"} */
 SELECT scene || '.' FROM texts
 UNION ALL VALUES
-('Truth: integer arithmetic. The input coordinates are exact in double precision at every distance. The same scene in steps of 128 m has coordinates that are exact in single precision as well.'),
-('float: bounds are rounded to the nearest number. float positions: the centre is rounded, and the bounds are computed from it, as Bullet does in single precision. Integer cell: coordinates count from the corner of a cell of 1,024 m; the subtraction is in double precision.'),
-('A frame: convert and set all boxes, and update the pairs. The truth about a ray is its segment before rounding.');
+('Truth: integer arithmetic. The input coordinates are exact in double precision at every distance. In a second scene, all coordinates are multiples of 128 m: they are exact in single precision too.'),
+('float: bounds are rounded to the nearest float. float positions: the centre is rounded, and the bounds are computed from the rounded centre, as Bullet does in single precision. Integer cell: coordinates are relative to the corner of a cell of 1,024 m; the subtraction is in double precision.'),
+('A frame: convert and set all boxes, and update the pairs. The true hits of a ray are the hits of its segment before rounding.');
 
 /* {"table": "pairs and rays"} */
 SELECT * FROM shown
@@ -90,11 +90,11 @@ SELECT * FROM shown;
     "settings": "{scene}", "x": "offset_m log0", "y": "missed_hits_percent", "series": "method"} */
 SELECT * FROM shown;
 
-/* {"chart": "P6-overhead", "title": "Cost of each way, against single precision at the origin",
+/* {"chart": "P6-overhead", "title": "Cost of each method, relative to single precision at the origin",
     "settings": "{scene}", "x": "offset_m log0", "y": "overhead_percent", "series": "method"} */
 SELECT * FROM shown;
 
-/* {"chart": "P6-position-error", "title": "Distance of balls at rest from their place",
+/* {"chart": "P6-position-error", "title": "Position error of balls at rest",
     "settings": "16 balls dropped onto a floor, 300 steps of 1/60 s, Bullet in single precision",
     "x": "offset_m log0", "y": "position_error_m log0", "series": "method"} */
 SELECT * FROM shown_rests;
@@ -120,7 +120,7 @@ SELECT claim, holds, evidence FROM (
     FROM total WHERE fine AND misses_no_hit
     UNION ALL
     SELECT number, 3,
-           method || ' finds the same pairs at every distance where all coordinates are exact',
+           method || ' finds the same pairs at every distance in the scene with exact coordinates',
            missed_pairs = 0 AND extra_pairs = 0,
            thousands(missed_pairs) || ' of ' || thousands(pairs) || ' missed, '
            || thousands(extra_pairs) || ' false'
@@ -128,9 +128,9 @@ SELECT claim, holds, evidence FROM (
 ORDER BY number, part;
 
 /* {"checks": "of balls"} */
-SELECT method || ': balls rest within a millimetre of their place, in the same state at every distance',
+SELECT method || ': balls rest within 1 mm of the correct position, in the same state at every distance',
        max(position_error) <= 1e-3 AND min(same),
-       'at most ' || fixed(1000 * max(position_error), 3) || ' mm; the same to the last bit at '
+       'at most ' || fixed(1000 * max(position_error), 3) || ' mm off; bit-identical state at '
        || sum(same) || ' of ' || count(*) || ' distances'
 FROM rested WHERE shifts_origin GROUP BY number;
 
@@ -151,8 +151,8 @@ SELECT '16 balls that come to rest ' || distance || ' from the origin, a step', 
 FROM rested JOIN far USING (point) ORDER BY number;
 
 /* {"conclusions": "what differences mean"} */
-SELECT method || ' at the origin, timed twice in the same run: ' || fixed(times, 2)
-       || ' times as long; smaller differences mean nothing.'
+SELECT method || ' at the origin was timed twice in this run: the two times differ by a factor of ' || fixed(times, 2)
+       || '. Ignore smaller differences.'
 FROM did WHERE number = 0 AND point = 1;
 
 /* {"conclusions": "of each method"} */
@@ -162,19 +162,19 @@ WITH begins AS (
            thousands(min(offset) FILTER (WHERE missed_hits > 0)) AS missed_hits
     FROM did GROUP BY number)
 SELECT method || ': misses pairs ' || ifnull('from ' || begins.missed || ' m on', 'at no distance')
-       || ', false ones are more than 1 % '
+       || ', more than 1 % false pairs '
        || ifnull('from ' || begins.extra || ' m on', 'at no distance')
-       || ', misses hits of rays '
+       || ', misses ray hits '
        || ifnull('from ' || begins.missed_hits || ' m on', 'at no distance')
-       || '; at ' || distance || ' ' || fixed(missed_percent, 1) || ' % of pairs missed, '
-       || fixed(extra_percent, 1) || ' % false, a frame takes ' || fixed(times, 2)
-       || ' times as long as float at the origin (' || fixed(at_origin, 2) || ' when there as well).'
+       || '. At ' || distance || ': ' || fixed(missed_percent, 1) || ' % of pairs missed, '
+       || fixed(extra_percent, 1) || ' % false; a frame takes ' || fixed(times, 2)
+       || ' times as long as float at the origin (this method at the origin: ' || fixed(at_origin, 2) || ' times).'
 FROM did JOIN far USING (point) JOIN begins USING (number)
      JOIN (SELECT number, times AS at_origin FROM did WHERE point = 1) USING (number)
 ORDER BY number;
 
 /* {"conclusions": "of balls"} */
-SELECT method || ': balls rest more than a millimetre off '
+SELECT method || ': balls rest with an error above 1 mm '
        || ifnull('from ' || thousands(first) || ' m on', 'at no distance')
        || '; ' || number(1000 * position_error) || ' mm at ' || distance || ', '
        || number(1000 * at_origin) || ' mm at the origin.'

@@ -3,10 +3,10 @@ R"sql(-- SPDX-License-Identifier: Zlib
 -- P2. Beside what pairs.sql reads, trials have a population and its largest edge by the mean.
 
 CREATE VIEW texts AS
-SELECT 'Edges of 0.5-1.5 m, or of 1-1000 m with as many of each order of magnitude; each box overlaps about '
-       || 'two others and moves by up to a fifth of the mean edge on each axis and frame; clusters hold '
-       || '1,000 boxes. setAabb for all and all pairs of a frame, the pair cache included (the paper''s '
-       || 'grids keep none); medians of 60 frames.' AS scene;
+SELECT 'Edges of 0.5-1.5 m, or of 1-1000 m (equally many of each order of magnitude). Each box overlaps about '
+       || 'two others, and moves by up to a fifth of the mean edge per axis and frame. Clusters hold 1,000 '
+       || 'boxes. A frame: setAabb for all boxes, and finding all pairs, including the pair cache (the '
+       || 'paper''s grids keep no pair cache); medians of 60 frames.' AS scene;
 
 -- The sizes that the grid chooses itself against the best of those that are fixed.
 CREATE TABLE contests AS
@@ -24,13 +24,13 @@ FROM did WHERE origin <> 'ours' GROUP BY population ORDER BY trial;
 SELECT scene FROM texts
 UNION ALL VALUES
 ('Truth: a sweep along one axis finds the true pairs. Brute force checks the sweep up to 20,000 objects.'),
-('Levels: hashphase with finest cells of this size, and coarser levels with cells 4, 16 ... times as large. A box is on the finest level whose cells are no smaller than the box. If most boxes are a little smaller than the cells of one level, all share this level. Automatic: hashphase chooses the sizes. One grid: the paper''s, with one cell size for all boxes.'),
+('Levels: hashphase with finest cells of this size, and coarser levels with cells 4, 16 ... times as large. A box is on the finest level whose cells are no smaller than the box. If the cells of one level are a little larger than most boxes, these boxes share this level. Automatic: hashphase chooses the sizes. One grid: the paper''s, with one cell size for all boxes.'),
 ('Not measured: the paper''s grids if an object would be in more than 64 cells on average; their times if a frame compares more than 300 boxes per object; the paper''s grids and btDbvtBroadphase above 20,000 objects.');
 
 -- Where no box is larger than a cell, each spans at most two cells an axis: its corners are all.
 /* {"checks": "the paper's grids"} */
-SELECT 'The paper''s corner cells miss nothing where no box is larger than a cell', total(missed) = 0,
-       thousands(total(missed)) || ' of ' || thousands(total(true_pairs))
+SELECT 'The paper''s corner cells miss no pair if no box is larger than a cell', total(missed) = 0,
+       thousands(total(missed)) || ' of ' || thousands(total(true_pairs)) || ' missed'
 FROM did WHERE NOT complete AND factor >= largest_edge;
 
 /* {"chart": "P2-time", "title": "Time of a frame per object, by the size of the finest cells",
@@ -64,12 +64,12 @@ SELECT * FROM regrets;
 -- A row for each of `did`, under the same rowid.
 CREATE TABLE shown AS
 SELECT method, factor AS "cell: cell [mean edges]", ns AS "ns: time [ns/object]",
-       speed AS "speed: times as fast as btDbvtBroadphase", true_pairs AS "true_pairs: true pairs judged",
+       speed AS "speed: times as fast as btDbvtBroadphase", true_pairs AS "true_pairs: true pairs checked",
        missed AS "missed: missed pairs", missed_share AS "missed_share: missed pairs [share of the true pairs]",
        low AS "missed_low: at least [share]", high AS "missed_high: at most, 95 % sure [share]",
        extra AS "false: false pairs",
-       extra_share AS "false_share: false pairs a true pair",
-       tested * frames / true_pairs AS "tests: boxes compared a true pair",
+       extra_share AS "false_share: false pairs per true pair",
+       tested * frames / true_pairs AS "tests: boxes compared per true pair",
        1.0 * bytes / objects AS "bytes: memory [bytes/object]"
 FROM results;
 
@@ -91,25 +91,25 @@ FROM did WHERE trial IN (SELECT trial FROM showcases) AND ms IS NOT NULL;
 
 /* {"conclusions": "sizes"} */
 SELECT iif(count(*) = 0, 'No population was timed with automatic and fixed cells.',
-           'Automatic cells against the best fixed ones, ' || count(*) || ' populations: '
+           'Automatic cells against the best fixed cells, ' || count(*) || ' populations: '
            || fixed(100 * median(regret), 0) || ' % more time in the median, '
-           || fixed(100 * max(regret), 0) || ' % in the worst (' || name
-           || '); the goal of at most 15 % is ' || iif(max(regret) <= 0.15, 'met.', 'missed there.'))
+           || fixed(100 * max(regret), 0) || ' % at worst (' || name
+           || '). The goal, at most 15 %, is ' || iif(max(regret) <= 0.15, 'met.', 'missed.'))
 FROM contests WHERE regret IS NOT NULL
 UNION ALL
-SELECT 'The worst fixed cell size takes ' || fixed(max(ns / best_ns), 1) || ' times as long as the best one ('
+SELECT 'The worst fixed cell size takes ' || fixed(max(ns / best_ns), 1) || ' times as long as the best fixed cell size ('
        || did.name || ', cells of ' || number(factor) || ' mean edges).'
 FROM did JOIN contests USING (trial) WHERE origin = 'ours' AND factor IS NOT NULL AND ns IS NOT NULL;
 
 /* {"conclusions": "the paper's grid, and Bullet", "each": "SELECT * FROM showcases"} */
-SELECT 'One grid as in the paper, ' || name || ': at its best cell size it takes '
+SELECT 'The paper''s grid, ' || name || ': at its best cell size, it takes '
        || fixed(min(iif(exact, ns, NULL)) / automatic_ns, 1)
-       || ' times as long as automatic levels; filed by corners as printed, it misses up to '
+       || ' times as long as automatic levels. With corner cells, as printed, it misses up to '
        || number(100 * max(missed_share)) || ' % of the pairs.'
 FROM did JOIN contests USING (trial, name) WHERE trial = :trial AND origin = 'paper'
 GROUP BY trial HAVING count(iif(exact, ns, NULL)) > 0 AND automatic_ns IS NOT NULL
 UNION ALL
 SELECT 'btDbvtBroadphase, ' || name || ': ' || fixed(bullet_ns / automatic_ns, 1)
-       || ' times as long as automatic levels, and ' || result || '.'
+       || ' times as long as automatic levels; ' || result || '.'
 FROM bullet JOIN contests USING (trial) WHERE trial = :trial AND bullet_ns / automatic_ns IS NOT NULL;
 )sql"

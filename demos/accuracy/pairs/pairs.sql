@@ -13,8 +13,8 @@ WITH sums AS (SELECT trial, way, count(*) AS frames, sum(true_pairs) AS true_pai
                  GROUP BY trial, way)
 SELECT *, 1e6 * ms / objects AS ns,
        iif(missed = 0 AND extra = 0, 'exactly the overlapping pairs',
-           iif(missed = 0, 'misses none', 'misses ' || number(100 * missed_share) || ' % of the pairs')
-           || iif(extra = 0, ', none is false', ', lists ' || number(100 * extra_share) || ' % too many'))
+           iif(missed = 0, 'misses no pair', 'misses ' || number(100 * missed_share) || ' % of the pairs')
+           || iif(extra = 0, ', no false pairs', ', lists ' || number(100 * extra_share) || ' % too many pairs'))
        AS result
 FROM trials JOIN ways USING (trial) JOIN shares USING (trial, way) JOIN heap USING (trial, way)
      LEFT JOIN medians USING (trial, way)
@@ -28,20 +28,20 @@ SELECT did.*, bullet_ns / ns AS speed, coalesce(interval_low(missed, true_pairs,
 FROM did LEFT JOIN bullet USING (trial) ORDER BY did.rowid;
 
 /* {"checks": "what ways promise"} */
-SELECT 'Every exact way lists all overlapping pairs and no other',
+SELECT 'Every exact method lists exactly the overlapping pairs',
        sum(missed) = 0 AND sum(extra) = 0 AND sum(true_pairs) > 0,
        thousands(total(missed)) || ' missed and ' || thousands(total(extra)) || ' false of '
        || thousands(total(true_pairs)) || ' pairs in ' || count(*) || ' runs'
-       || coalesce('; first ' || (SELECT method FROM did WHERE exact AND missed + extra > 0), '')
+       || coalesce('; first fault: ' || (SELECT method FROM did WHERE exact AND missed + extra > 0), '')
 FROM did WHERE exact
 UNION ALL
-SELECT 'Ways that may list too many miss none', sum(missed) = 0,
+SELECT 'Methods that may list false pairs miss no pair', sum(missed) = 0,
        thousands(total(missed)) || ' missed and ' || thousands(total(extra)) || ' false of '
        || thousands(total(true_pairs)) || ' pairs in ' || count(*) || ' runs'
-       || coalesce('; first ' || (SELECT method FROM did WHERE complete AND NOT exact AND missed > 0), '')
+       || coalesce('; first fault: ' || (SELECT method FROM did WHERE complete AND NOT exact AND missed > 0), '')
 FROM did WHERE complete AND NOT exact GROUP BY complete
 UNION ALL
-SELECT 'The sweep that tells the true pairs agrees with brute force', sum(differs) = 0,
+SELECT 'The sweep that finds the true pairs agrees with brute force', sum(differs) = 0,
        sum(differs) || ' of ' || count(*) || ' frames of up to 20,000 objects differ'
 FROM truths;
 )sql"

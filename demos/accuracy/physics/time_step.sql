@@ -5,8 +5,8 @@ R"sql(-- SPDX-License-Identifier: Zlib
 -- (each point, contestant and frame).
 
 CREATE VIEW texts AS
-SELECT 'Bullet in single precision; two simulated seconds, looked at 30 times a second; the time is that of '
-       || 'a simulated second, a real-time factor of 1 being 1,000 ms; lower left is better' AS scene,
+SELECT 'Bullet in single precision; two simulated seconds, compared 30 times a second; times are per simulated '
+       || 'second (1,000 ms: real time); lower left is better' AS scene,
        (SELECT method FROM contestants) AS first_method;
 
 CREATE TABLE settings AS
@@ -42,7 +42,7 @@ GROUP BY point;
 SELECT scene || '.' FROM texts
 UNION ALL VALUES
 ('After SimBenchmark (Kang, Hwangbo and others). Truth: the laws of motion in double precision, and no overlap. The errors include the error of Bullet''s steps against continuous motion.'),
-('Canonical order: pairs sorted by the numbers of the bodies, contacts by age and with m_deterministicOverlappingPairs. No body sleeps. Restitution holds at any speed.'),
+('Canonical order: pairs are sorted by the indices of the bodies, contacts by age and with m_deterministicOverlappingPairs. No body sleeps. Restitution applies at any speed.'),
 ('Contacts that keep energy: setContactProcessingThreshold(0), so that only touching bodies are in contact, and m_splitImpulsePenetrationThreshold above 0, so that overlap is undone without adding speed.');
 
 /* {"table": "all"} */
@@ -69,7 +69,7 @@ FROM measures, (VALUES (1), (2), (3))
 WHERE kind = 1 OR measure = 0 AND (kind = 2 OR task_name = 'fall') ORDER BY task, kind, measure;
 
 /* {"chart": "P7-{:task_name}-{:name}", "title": "{:task_title}: {:title}",
-    "settings": "10 iterations a step, a point for each length of step; {scene}", "x": "second_ms log",
+    "settings": "10 iterations a step, one point for each step length; {scene}", "x": "second_ms log",
     "y": "error log0", "series": "method", "label": "step_s", "front": true,
     "each": "SELECT * FROM shown", "when": "{:kind = 1}"} */
 SELECT method, step AS "step_s: step", ms AS "second_ms: time of a simulated second [ms]",
@@ -78,14 +78,14 @@ SELECT method, step AS "step_s: step", ms AS "second_ms: time of a simulated sec
 FROM did WHERE task = :task AND measure = :measure AND by_steps AND NOT keeps_energy
 ORDER BY contestant, point;
 
-/* {"chart": "P7-ways-{:task_name}", "title": "{:task_title}: what buys accuracy?",
+/* {"chart": "P7-ways-{:task_name}", "title": "{:task_title}: what increases accuracy?",
     "settings": "{first_method}; {scene}", "x": "second_ms log", "y": "error log0", "series": "way",
     "label": "setting", "front": true, "each": "SELECT * FROM shown", "when": "{:kind = 2}"} */
 SELECT way, setting, ms AS "second_ms: time of a simulated second [ms]", error AS "error: {:axis}"
 FROM did WHERE task = :task AND measure = 0 AND contestant = 0 ORDER BY point;
 
 /* {"chart": "P7-fall-theory",
-    "title": "Error of free fall: half a step at the speed gained, as in theory", "settings": "{scene}",
+    "title": "Error of free fall; theory: the speed gained, times half a step", "settings": "{scene}",
     "x": "step_ms log", "y": "error log", "series": "method", "theory": "theory",
     "each": "SELECT * FROM shown", "when": "{:kind = 3}"} */
 SELECT method, 1000.0 / per_second AS "step_ms: step [ms]", error AS "error: {:axis}",
@@ -93,16 +93,16 @@ SELECT method, 1000.0 / per_second AS "step_ms: step [ms]", error AS "error: {:a
 FROM did WHERE task = :task AND by_steps AND NOT keeps_energy ORDER BY contestant, point;
 
 /* {"checks": "the broadphase does not matter"} */
-SELECT 'With lists in canonical order all broadphases pass through the same states, to the last bit: the '
+SELECT 'With lists in canonical order, all broadphases give bit-identical states: their '
        || 'curves coincide', min(same), sum(same) || ' of ' || count(*) || ' settings'
 FROM sameness;
 
 -- The most that rounding in single precision adds to the error of a fall of two seconds, which is 20 m deep:
 -- half a unit in the last place (of 24 bits) a step in speed and in place.
 /* {"checks": "free fall"} */
-SELECT 'Free fall goes wrong by what theory says of such steps, up to single precision',
+SELECT 'Free fall has the error that theory predicts for such steps, within single precision',
        min(away <= rounding),
-       'at most ' || fixed(max(away), 3) || ' mm away; rounding may add up to ' || fixed(max(rounding), 2)
+       'at most ' || fixed(max(away), 3) || ' mm from theory; rounding may add up to ' || fixed(max(rounding), 2)
        || ' mm with the shortest steps'
 FROM (SELECT task, abs(error - fall_error) AS away, 1000 * 2 * 20 * 2.0 / 16777216 * per_second AS rounding
       FROM did WHERE task_name = 'fall' AND by_steps AND NOT keeps_energy)
@@ -114,8 +114,8 @@ SELECT task_title || ', one simulated second', method || ', steps of ' || settin
 FROM did WHERE measure = 0;
 
 /* {"conclusions": "our time against Bullet's"} */
-SELECT us.method || ' against ' || bullet.method || ': the latter takes '
-       || fixed(median(bullet.ms / us.ms), 2) || ' times the time of the former in the median ('
+SELECT bullet.method || ' takes '
+       || fixed(median(bullet.ms / us.ms), 2) || ' times as long as ' || us.method || ' in the median ('
        || fixed(min(bullet.ms / us.ms), 2) || ' to '
        || fixed(max(bullet.ms / us.ms), 2) || ').'
 FROM did AS us JOIN did AS bullet USING (point, measure, canonical)
@@ -124,8 +124,8 @@ GROUP BY us.contestant, bullet.contestant;
 
 -- The best that each way has reached in the first task.
 /* {"conclusions": "what buys accuracy"} */
-SELECT task_title || ', ' || way || ': at best ' || error_text || ', for ' || ms(ms)
-       || ' ms a simulated second (' || setting || ').'
+SELECT task_title || ', ' || way || ': at best ' || error_text || ', in ' || ms(ms)
+       || ' ms per simulated second (' || setting || ').'
 FROM (SELECT *, min(error) FROM did WHERE task = 0 AND measure = 0 AND contestant = 0 GROUP BY way)
      JOIN (SELECT way, min(point) AS first FROM points GROUP BY way) USING (way)
 ORDER BY first;
@@ -135,7 +135,7 @@ ORDER BY first;
 SELECT longest.task_title || iif(longest.keeps_energy, ', contacts that keep energy, ', ', ')
        || longest.title || ': ' || longest.error_text || ' with steps of ' || longest.step
        || ', ' || shortest.error_text || ' with '
-       || shortest.step || iif(shortest.error > longest.error, '; smaller steps make it worse.', '.')
+       || shortest.step || iif(shortest.error > longest.error, '; smaller steps increase the error.', '.')
 FROM (SELECT min(point) AS first, max(point) AS last FROM settings WHERE by_steps GROUP BY task, way)
      JOIN did AS longest ON longest.point = first
      JOIN did AS shortest ON shortest.point = last AND shortest.measure = longest.measure

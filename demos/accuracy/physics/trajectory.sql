@@ -35,10 +35,10 @@ FROM (SELECT * FROM sameness WHERE method <> 'btSimpleBroadphase' ORDER BY run, 
 /* {"settings": "scene, truth, words"} */
 SELECT scene || '.' FROM texts
 UNION ALL VALUES
-('Truth: btSimpleBroadphase, which compares all boxes with all. Place, velocities and activation of all bodies are compared after every step, bit by bit.'),
-('Canonical order: pairs sorted by the numbers of the bodies, contact manifolds by age, so that only the set of pairs can matter.'),
-('m_deterministicOverlappingPairs sorts contacts by unique ids, which btSimpleBroadphase and bt32BitAxisSweep3 reuse when bodies come back (churn), and the other broadphases do not.'),
-('lattice: spheres that fall into an open box; bouncing: balls that bounce endlessly; compounds: dumbbells and crosses that fall into a heap; churn: a pile out of which bodies are taken and dropped again; `hashphase compare` has the other scenes.');
+('Truth: btSimpleBroadphase, which compares every pair of boxes. Positions, velocities and activation states of all bodies are compared after every step, bit by bit.'),
+('Canonical order: pairs are sorted by the indices of the bodies, and contact manifolds by age. So only the set of pairs can affect the motion.'),
+('m_deterministicOverlappingPairs sorts contacts by unique ids. If bodies are removed and added again (churn), btSimpleBroadphase and bt32BitAxisSweep3 reuse these ids; the other broadphases do not.'),
+('lattice: spheres that fall into an open box; bouncing: balls that bounce endlessly; compounds: dumbbells and crosses that fall into a heap; churn: a pile from which bodies are removed and dropped again. The other scenes are scenes of `hashphase compare`.');
 
 CREATE VIEW words AS
 SELECT *, iif(differs IS NULL, 'yes', 'until step ' || differs) AS word FROM did;
@@ -67,25 +67,25 @@ WHERE did.list = 'as shipped' AND dbvt.method = 'btDbvtBroadphase' ORDER BY run,
 SELECT * FROM step_times;
 
 /* {"chart": "P8-same-motion",
-    "title": "In how many scenes do all bodies move as under brute force, to the last bit?",
+    "title": "In how many scenes is the motion of all bodies bit-identical to brute force?",
     "settings": "{scene}; {scenes} scenes", "mark": "cell", "x": "method names", "y": "order names",
     "shade": "same"} */
 SELECT method AS "method: broadphase", list AS "order: order of lists",
        same AS "same: scenes with the same motion"
 FROM sameness;
 
-/* {"chart": "P8-step-time", "title": "Time of a whole step under each broadphase",
-    "settings": "{scene}; lists as shipped; bars from 5 % to 95 % of the steps", "mark": "point",
+/* {"chart": "P8-step-time", "title": "Time of a whole step with each broadphase",
+    "settings": "{scene}; lists as shipped; bars: 5th to 95th percentile of the steps", "mark": "point",
     "x": "scene names", "y": "step_ms log", "series": "method", "low": "low_ms", "high": "high_ms"} */
 SELECT * FROM step_times;
 
 /* {"checks": "exact broadphases"} */
-SELECT method || ' moves all bodies as btSimpleBroadphase does, to the last bit, when pairs and contacts are '
+SELECT method || ' and btSimpleBroadphase give bit-identical motion of all bodies if pairs and contacts are '
        || 'listed in canonical order', same = scenes, same_text || ' scenes, ' || steps || ' steps each'
 FROM sameness, texts WHERE list = 'canonical' AND exact AND method <> 'btSimpleBroadphase' ORDER BY number;
 
 /* {"choices": "by scenes with another motion"} */
-SELECT 'A step of a Bullet world that moves as under brute force (mean of ' || scenes || ' scenes)',
+SELECT 'A step of a Bullet world with the same motion as under brute force (mean of ' || scenes || ' scenes)',
        method || ', lists ' || list, ms, 1 - 1.0 * same / scenes,
        'the same motion in ' || same_text || ' scenes', ours, low
 FROM sameness, texts ORDER BY run, number;
@@ -98,34 +98,34 @@ FROM did AS dbvt JOIN did AS truth USING (run, list)
 WHERE list = 'canonical' AND dbvt.method = 'btDbvtBroadphase' AND truth.method = 'btSimpleBroadphase';
 
 /* {"conclusions": "the same motion"} */
-SELECT 'Canonical order, the same motion as under btSimpleBroadphase: ' || sentence || ' scenes.'
+SELECT 'Lists in canonical order, the same motion as under btSimpleBroadphase: ' || sentence || ' scenes.'
 FROM sentences WHERE list = 'canonical'
 UNION ALL
-SELECT 'In canonical order btDbvtBroadphase moves bodies as brute force does in ' || canonical.same_text
-       || ' scenes, its contacts sorted by Bullet''s own flag in ' || flagged.same_text
-       || ': at the end it lists ' || fixed(extra_percent, 1) || ' % more pairs than overlap'
-       || iif(asleep_percent IS NULL, '', ', and bodies slept ' || fixed(asleep_percent, 1)
+SELECT 'btDbvtBroadphase gives the same motion as brute force in ' || canonical.same_text
+       || ' scenes in canonical order, and in ' || flagged.same_text || ' with m_deterministicOverlappingPairs. '
+       || 'At the end, it lists ' || fixed(extra_percent, 1) || ' % more pairs than overlap'
+       || iif(asleep_percent IS NULL, '', ', and bodies slept for ' || fixed(asleep_percent, 1)
               || ' % of the time that they sleep under brute force')
-       || '. These pairs have no contacts, but they change the order in which Bullet solves contacts and who '
-       || 'may sleep'
-       || coalesce('; the same tree held to exact boxes agrees in '
+       || '. The extra pairs have no contacts, but they change the order in which Bullet solves contacts, and '
+       || 'which bodies may sleep'
+       || coalesce('. The same tree with exact boxes gives the same motion in '
                    || (SELECT same_text FROM sameness
-                       WHERE list = 'canonical' AND method = 'btDbvtBroadphase, exact boxes'), '') || '.'
+                       WHERE list = 'canonical' AND method = 'btDbvtBroadphase, exact boxes') || ' scenes', '') || '.'
 FROM dbvt, sameness AS canonical JOIN sameness AS flagged USING (method)
 WHERE method = 'btDbvtBroadphase' AND canonical.list = 'canonical'
       AND flagged.list = 'm_deterministicOverlappingPairs'
 UNION ALL
-SELECT 'With m_deterministicOverlappingPairs alone: ' || sentence || '.'
+SELECT 'With only m_deterministicOverlappingPairs: ' || sentence || ' scenes.'
 FROM sentences WHERE list = 'm_deterministicOverlappingPairs'
 UNION ALL
-SELECT 'As shipped: ' || sentence || '. Bullet''s own broadphases differ among each other as well: its '
-       || 'results depend on the order of pairs.'
+SELECT 'Lists as shipped: ' || sentence || ' scenes. Bullet''s own broadphases differ from each other too: '
+       || 'Bullet''s results depend on the order of pairs.'
 FROM sentences WHERE list = 'as shipped';
 
 /* {"conclusions": "time"} */
-SELECT 'A whole step over hashphase is ' || fixed(min(ratio), 2) || ' to ' || fixed(max(ratio), 2)
-       || ' times as fast as over btDbvtBroadphase, ' || fixed(median(ratio), 2)
-       || ' times in the median scene: of so few bodies, most of a step is narrowphase and solver.'
+SELECT 'A whole step with hashphase is ' || fixed(min(ratio), 2) || ' to ' || fixed(max(ratio), 2)
+       || ' times as fast as with btDbvtBroadphase, ' || fixed(median(ratio), 2)
+       || ' times in the median scene: with few bodies, most of a step is narrow phase and solver.'
 FROM (SELECT "ratio_to_dbvt: times as fast as btDbvtBroadphase" AS ratio
       FROM step_times WHERE method = 'hashphase')
 GROUP BY 1 = 1;

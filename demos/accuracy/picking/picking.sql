@@ -42,12 +42,12 @@ CREATE TABLE longest AS
 SELECT method, max(length) AS length, hits, missed FROM did WHERE length IS NOT NULL GROUP BY method;
 
 CREATE VIEW shown_times AS
-SELECT method, grazed.ns AS "time: a ray [ns]", grazed.low AS "low: 5th percentile [ns]",
-       grazed.high AS "high: 95th percentile [ns]", grazed.ns / bullet_ns AS "ratio: a ray [times Bullet's]",
-       missed_percent AS "missed: hits missed [%]", 1.0 * falsely / rays AS "falsely: false hits a ray",
-       wrong_percent AS "wrong_nearest: wrong nearest [% of rays]",
-       iif(boxes > 0, 1.0 * cells / rays, NULL) AS "cells: cells or blocks a ray",
-       iif(boxes > 0, 1.0 * boxes / rays, NULL) AS "boxes: boxes tested a ray"
+SELECT method, grazed.ns AS "time: time per ray [ns]", grazed.low AS "low: 5th percentile [ns]",
+       grazed.high AS "high: 95th percentile [ns]", grazed.ns / bullet_ns AS "ratio: time per ray [times Bullet's]",
+       missed_percent AS "missed: hits missed [%]", 1.0 * falsely / rays AS "falsely: false hits per ray",
+       wrong_percent AS "wrong_nearest: wrong nearest box [% of rays]",
+       iif(boxes > 0, 1.0 * cells / rays, NULL) AS "cells: cells or blocks per ray",
+       iif(boxes > 0, 1.0 * boxes / rays, NULL) AS "boxes: boxes tested per ray"
 FROM grazed LEFT JOIN (SELECT ns AS bullet_ns FROM grazed WHERE method = 'btDbvtBroadphase::rayTest')
 ORDER BY number;
 
@@ -56,23 +56,23 @@ SELECT length AS "length: length [cells]", method,
        iif(nearest_only OR hits = 0, NULL, percent(missed, hits)) AS "missed: hits missed [%]",
        iif(nearest_only, NULL, 100 * interval_low(missed, max(hits, 1))) AS "low: at least [%]",
        iif(nearest_only, NULL, 100 * interval_high(missed, max(hits, 1))) AS "high: at most, 95 % sure [%]",
-       1.0 * falsely / rays AS "falsely: false hits a ray",
+       1.0 * falsely / rays AS "falsely: false hits per ray",
        percent(wrong_nearest, rays_that_hit) AS "wrong_nearest: wrong nearest box [% of rays]",
-       iif(cells > 0, 1.0 * cells / rays, NULL) AS "cells: cells a ray"
+       iif(cells > 0, 1.0 * cells / rays, NULL) AS "cells: cells per ray"
 FROM did JOIN methods USING (method) WHERE length IS NOT NULL ORDER BY did.rowid;
 
 /* {"settings": "scene, truth, methods"} */
 SELECT slab || '.' FROM texts
 UNION ALL VALUES
-('All coordinates are multiples of 2^-13 m. 128-bit integers find the truth about all boxes without rounding. Touching is a hit.'),
-('All walks through cells test boxes in the same way, by RayRegion::key(). They differ in the cells that they visit. The paper''s plane is in the middle of the heights of the boxes.')
+('All coordinates are multiples of 2^-13 m. The truth for all boxes is computed in 128-bit integers, without rounding. Touching counts as a hit.'),
+('All methods that walk through cells test boxes with RayRegion::key(). They differ only in the cells that they visit. The paper''s plane is at the middle height of all boxes.')
 UNION ALL
-SELECT 'Methods that take time for each cell are given rays of up to ' || thousands(longest_cell_walk)
+SELECT 'Methods that visit every cell on a ray are tested with rays of up to ' || thousands(longest_cell_walk)
        || ' cells.'
 FROM plan;
 
 /* {"chart": "P5-offset-{:contact}",
-    "title": "Hits that are missed when a ray passes the {:contact} of a box, by its distance outside (negative: inside)",
+    "title": "Missed hits of rays that pass the {:contact} of a box, by the distance outside the box (negative: inside)",
     "settings": "{slab}", "x": "ulps", "y": "missed", "series": "method", "low": "low", "high": "high",
     "each": "SELECT contact FROM did WHERE contact IS NOT NULL GROUP BY contact ORDER BY min(rowid)"} */
 SELECT ulps AS "ulps: offset [ulp]", method,
@@ -82,26 +82,26 @@ SELECT ulps AS "ulps: offset [ulp]", method,
        percent(box_falsely, rays - box_hits) AS "falsely: false hits [%]"
 FROM did JOIN methods USING (method) WHERE contact = :contact AND NOT nearest_only ORDER BY did.rowid;
 
-/* {"chart": "P5-length", "title": "Boxes missed, by the length of rays",
-    "settings": "rays from near the origin, boxes of 1 m or, where that is more, of an ulp of their coordinates, strung along them, about half of them hit; cells of 1 m, single precision",
+/* {"chart": "P5-length", "title": "Missed boxes, by the length of rays",
+    "settings": "rays from near the origin; boxes along the rays, about half of the boxes hit; edges of 1 m or one ulp of the coordinates, whichever is larger; cells of 1 m, single precision",
     "x": "length log", "y": "missed log0", "series": "method", "low": "low", "high": "high"} */
 SELECT * FROM shown_lengths;
 
 /* {"chart": "P5-length-cells",
-    "title": "Cells, or blocks of boxes, that a ray visits, by its length",
-    "settings": "rays from near the origin, boxes of 1 m or, where that is more, of an ulp of their coordinates, strung along them, about half of them hit; cells of 1 m, single precision",
+    "title": "Cells or blocks of boxes that a ray visits, by the length of the ray",
+    "settings": "rays from near the origin; boxes along the rays, about half of the boxes hit; edges of 1 m or one ulp of the coordinates, whichever is larger; cells of 1 m, single precision",
     "x": "length log", "y": "cells log", "series": "method"} */
 SELECT * FROM shown_lengths;
 
 /* {"table": "times"} */
 SELECT * FROM shown_times;
 
-/* {"chart": "P5-missed-time", "title": "Boxes missed against the time of a ray",
+/* {"chart": "P5-missed-time", "title": "Missed boxes against the time per ray",
     "settings": "{slab}; medians of at least 60 frames", "mark": "point", "x": "time log",
     "y": "missed log0", "series": "method", "front": true} */
 SELECT * FROM shown_times;
 
-/* {"chart": "P5-nearest-time", "title": "Rays with a wrong nearest box against the time of a ray",
+/* {"chart": "P5-nearest-time", "title": "Rays with a wrong nearest box against the time per ray",
     "settings": "{slab}; medians of at least 60 frames", "mark": "point", "x": "time log",
     "y": "wrong_nearest log0", "series": "method", "front": true} */
 SELECT * FROM shown_times;
@@ -113,21 +113,21 @@ WITH total AS (
            sum(wrong_nearest) AS wrong_nearest, sum(far_from_nearest) AS far_from_nearest
     FROM did JOIN methods USING (method) WHERE must_find_all GROUP BY number)
 SELECT claim, holds, evidence FROM (
-    SELECT number, 1 AS part, method || ' misses no box that a ray meets' AS claim,
+    SELECT number, 1 AS part, method || ' misses no box that a ray hits' AS claim,
            missed = 0 AND hits > 0 AS holds,
            thousands(missed) || ' of ' || thousands(hits) || ' hits missed' AS evidence
     FROM total WHERE NOT nearest_only
     UNION ALL
-    SELECT number, 1, method || ' finds a box where a ray meets one',
+    SELECT number, 1, method || ' finds a box for every ray that hits a box',
            none_found = 0 AND rays_that_hit > 0,
-           thousands(none_found) || ' of ' || thousands(rays_that_hit) || ' rays found none'
+           thousands(none_found) || ' of ' || thousands(rays_that_hit) || ' rays found no box'
     FROM total WHERE nearest_only
     UNION ALL
     SELECT number, 2,
-           method || ': the box that it puts first is met no later than others, but for rounding',
+           method || ' puts the nearest box first, except for rounding',
            far_from_nearest = 0 AND rays_that_hit > 0,
            thousands(far_from_nearest) || ' of ' || thousands(rays_that_hit)
-           || ' rays off by more; by rounding, and false hits, '
+           || ' rays with a wrong first box; others by rounding or false hits: '
            || thousands(wrong_nearest - far_from_nearest)
     FROM total)
 ORDER BY number, part;
@@ -140,17 +140,17 @@ SELECT task, method, frame_ms, error, result, ours, low_ms FROM (
     FROM grazed, texts WHERE NOT nearest_only
     UNION ALL
     SELECT grazed.*, 2, 'The nearest box on ' || texts.rays || ': wrong', wrong_percent,
-           'another box, or none, on ' || number(wrong_percent) || ' % of rays'
+           'wrong box or no box on ' || number(wrong_percent) || ' % of rays'
     FROM grazed, texts)
 ORDER BY number, part;
 
 /* {"conclusions": "a sentence a method"} */
-SELECT method || ': ' || ms(ns) || ' ns a ray; '
-       || iif(nearest_only, '', 'of grazing rays'' hits ' || thousands(grazed.missed) || ' of '
-                                || thousands(grazed.hits) || ' are missed, ')
-       || thousands(falsely) || ' false hits, a wrong nearest box on ' || thousands(wrong_nearest)
+SELECT method || ': ' || ms(ns) || ' ns per ray. Grazing rays: '
+       || iif(nearest_only, '', 'misses ' || thousands(grazed.missed) || ' of '
+                                || thousands(grazed.hits) || ' hits, ')
+       || thousands(falsely) || ' false hits, wrong nearest box on ' || thousands(wrong_nearest)
        || ' of ' || thousands(rays_that_hit) || ' rays'
-       || iif(nearest_only, '', '; of rays of ' || thousands(length) || ' cells it misses '
+       || iif(nearest_only, '', '. Rays of ' || thousands(length) || ' cells: misses '
                                 || thousands(longest.missed) || ' of ' || thousands(longest.hits)
                                 || ' hits')
        || '.'

@@ -4,10 +4,10 @@ R"sql(-- SPDX-License-Identifier: Zlib
 -- frame), times (each mean of some frames); estimates (each query) and theory, by radius / cell.
 
 CREATE VIEW texts AS
-SELECT 'Agents with boxes of 0.5 m wander over a square by up to 1/50 of the radius on each axis and frame; '
-       || 'each counts four colours, drawn once, among those near it and takes the rarest (at random, 75 % '
-       || 'would be wrong). Time: agents moved in the index and decisions taken, for all; means of 8 frames '
-       || 'in a row, medians of 8 such means.' AS scene;
+SELECT 'Agents with boxes of 0.5 m wander over a square, by up to 1/50 of the radius per axis and frame. Each '
+       || 'agent has one of four random colours, counts the colours of its neighbours, and takes the rarest '
+       || '(75 % of random choices would be wrong). Time: moving all agents in the index, and taking all '
+       || 'decisions; medians of 8 means, each of 8 frames in a row.' AS scene;
 
 CREATE TABLE did AS
 WITH sums AS (SELECT trial, method, count(*) AS frames, sum(neighbours) AS neighbours, sum(found) AS found,
@@ -36,7 +36,7 @@ SELECT crowd, method, iif(uses_cells, ratio, NULL) AS "radius_by_cell: radius [c
        wrong_share AS "wrong: wrong decisions [share]",
        interval_low(wrong, decisions, frames) AS "wrong_low: at least [share]",
        interval_high(wrong, decisions, frames) AS "wrong_high: at most, 95 % sure [share]",
-       1.0 * worse / decisions AS "worse: decisions for a colour that is not equally rare [share]"
+       1.0 * worse / decisions AS "worse: decisions for a more frequent colour [share]"
 FROM did LEFT JOIN bullet USING (crowd) ORDER BY did.rowid;
 
 CREATE VIEW first_results AS SELECT * FROM results WHERE crowd = (SELECT crowd FROM trials);
@@ -52,9 +52,9 @@ GROUP BY estimates.ratio;
 /* {"settings": "scene, truth, words"} */
 SELECT scene FROM texts
 UNION ALL VALUES
-('Truth: the distance to every other agent in double precision, for agents with all neighbouring cells within the square. Coordinates are multiples of 1/256 m, so single precision decides without rounding.'),
-('A right decision takes the rarest colour; of equally rare colours, the lowest.'),
-('Cells: all agents whose box touches a cell that the box of the ball touches. Cells and boxes: all agents whose box touches the box of the ball. As printed: the half-open loop over cells of the paper, which counts no agent if the radius is smaller than a cell, and counts an agent on a border twice.');
+('Truth: the distance to every other agent in double precision, for agents whose neighbouring cells all lie within the square. Coordinates are multiples of 1/256 m, so single precision decides without rounding.'),
+('A right decision takes the rarest colour; if several colours are equally rare, the lowest of them.'),
+('Cells: all agents whose box touches a cell that the box around the search radius touches. Cells and boxes: all agents whose box touches the box around the search radius. As printed: the paper''s half-open loop over cells. It counts no agent if the radius is smaller than a cell, and counts an agent on a cell border twice.');
 
 /* {"chart": "P3-decisions-{:number}", "title": "Wrong decisions against time: {:crowd}",
     "settings": "{scene}", "mark": "point", "x": "ns log", "y": "wrong log0", "series": "method",
@@ -81,26 +81,26 @@ SELECT ratio AS "radius_by_cell: estimateWithin in space: radius [cells]", found
 FROM stated;
 
 /* {"checks": "exact ways"} */
-SELECT 'Exact ways find every neighbour and no other, and take no wrong decision',
+SELECT 'Exact methods find exactly the neighbours, and take no wrong decision',
        count(*) > 0 AND min(is_right),
        thousands(total(neighbours - found)) || ' missed and ' || thousands(total(wrongly)) || ' false of '
        || thousands(total(neighbours)) || ' neighbours, ' || thousands(total(wrong)) || ' wrong of '
        || thousands(total(decisions)) || ' decisions in ' || count(*) || ' runs'
-       || coalesce('; first ' || (SELECT method FROM did WHERE exact AND NOT is_right), '')
+       || coalesce('; first fault: ' || (SELECT method FROM did WHERE exact AND NOT is_right), '')
 FROM did WHERE exact;
 
 /* {"checks": "complete ways"} */
-SELECT 'Cells, with boxes and without, miss no agent within the radius', total(neighbours - found) = 0,
-       thousands(total(neighbours - found)) || ' of ' || thousands(total(neighbours))
+SELECT 'Cells, with or without boxes, miss no agent within the radius', total(neighbours - found) = 0,
+       thousands(total(neighbours - found)) || ' of ' || thousands(total(neighbours)) || ' missed'
 FROM did WHERE complete;
 
 /* {"checks": "what proximity.hpp states"} */
-SELECT 'estimateWithin in space: 1, 2, 3 and 4 in 10 are really within 1, 2, 4 and 8 cells',
+SELECT 'estimateWithin in space: for radii of 1, 2, 4 and 8 cells, 1, 2, 3 and 4 in 10 found agents are within the radius',
        max(abs(share - stated)) < 0.05,  -- half a tenth
        group_concat(fixed(share, 3) || ' (theory ' || fixed(theory, 3) || ')', ', ')
 FROM stated
 UNION ALL
-SELECT 'estimateWithin misses no agent, and finds none farther than sqrt(3) (radius + cell)',
+SELECT 'estimateWithin misses no agent, and finds no agent farther than sqrt(3) (radius + cell)',
        sum(missed) = 0 AND sum(too_far) = 0,
        thousands(total(missed)) || ' missed, ' || thousands(total(too_far)) || ' too far of '
        || thousands(total(found)) || ' found'
@@ -111,8 +111,8 @@ SELECT 'Neighbours for AI: ' || crowd, name, ms, wrong_share,
        iif(is_right, 'every neighbour, every decision right',
            number(100 * wrong_share) || ' % of decisions wrong; finds ' || number(100 * recall)
            || ' % of the neighbours'
-           || coalesce(', ' || iif(precision IS NULL, NULL, number(100 * precision))
-                       || ' % of those named are', '')),
+           || coalesce('; ' || iif(precision IS NULL, NULL, number(100 * precision))
+                       || ' % of the found agents are neighbours', '')),
        origin = 'ours', ms_low
 FROM did;
 
@@ -123,15 +123,15 @@ WITH best AS (SELECT * FROM did WHERE crowd = :crowd AND exact ORDER BY ns LIMIT
      faster AS (SELECT did.name || ' (' || fixed(best.ns / did.ns, 1) || 'x, '
                        || number(100 * did.wrong_share) || ' % of decisions wrong)' AS text
                 FROM did JOIN best USING (crowd) WHERE did.ns < best.ns ORDER BY did.rowid)
-SELECT crowd || ': the fastest exact way is ' || name || ' (' || fixed(ns, 0) || ' ns an agent).'
-       || coalesce(' Faster: ' || (SELECT group_concat(text, '; ') FROM faster) || '.',
-                   ' No rough way is faster.')
+SELECT crowd || ': the fastest exact method is ' || name || ' (' || fixed(ns, 0) || ' ns per agent).'
+       || coalesce(' Faster, but inexact: ' || (SELECT group_concat(text, '; ') FROM faster) || '.',
+                   ' No inexact method is faster.')
        || iif(bullet_ns IS NULL, '',
               ' btDbvtBroadphase takes ' || fixed(bullet_ns / ns, 0) || ' times as long.')
 FROM best LEFT JOIN bullet USING (crowd)
 UNION ALL
-SELECT crowd || ', asked one by one: ' || method || ' is '
+SELECT crowd || ', one query per agent: ' || method || ' is '
        || iif(count(*) > 1, fixed(min(bullet_ns / ns), 2) || ' to ', '') || fixed(max(bullet_ns / ns), 2)
-       || ' times as fast as btDbvtBroadphase' || iif(count(*) > 1, ', by cell size.', '.')
+       || ' times as fast as btDbvtBroadphase' || iif(count(*) > 1, ', depending on the cell size.', '.')
 FROM did JOIN bullet USING (crowd) WHERE crowd = :crowd AND method = 'findWithin';
 )sql"

@@ -46,21 +46,20 @@ FROM (SELECT number, method, group_concat(percent(detected, contacts)) AS shape
 ORDER BY number;
 
 CREATE VIEW texts AS
-SELECT 'bullets of radius 5 mm that touch a wall during a frame, at any moment of it as likely as at any '
-       || 'other; walls of '
+SELECT 'bullets of radius 5 mm touch a wall at a random moment of a frame (uniformly distributed); walls of '
        || (SELECT group_concat(number(thickness), ', ')
            FROM (SELECT DISTINCT thickness FROM at_walls ORDER BY thickness))
-       || ' m, every other one moving; up to 7 degrees aslant; truth in integers; bars: 95 % intervals; '
+       || ' m, every second wall moves; bullets fly up to 7 degrees obliquely; truth in integers; bars: 95 % intervals; '
        || 'seed ' || seed
        || ifnull((SELECT group_concat(note, '')
-                  FROM (SELECT '; on the line of ' || owner.method || ' also lie: '
+                  FROM (SELECT '; on the line of ' || owner.method || ' also: '
                                || group_concat(twin.method, ', ') AS note
                         FROM (SELECT * FROM twins ORDER BY number) AS twin
                              JOIN twins AS owner ON twin.first = owner.number
                         WHERE twin.number <> owner.number GROUP BY owner.number)), '') AS walls,
-       thousands(movers) || ' of ' || thousands(objects) || ' boxes fly, in new directions each frame, on '
-       || 'the ground as far as is said and up or down by up to half as far; cells of 1 m; '
-       || (SELECT group_concat(judged_frames, ', ') FROM motions) || ' frames judged, ' || timed_frames
+       thousands(movers) || ' of ' || thousands(objects) || ' boxes fly in a new direction each frame: '
+       || 'horizontally by the stated distance, and up or down by up to half of it; cells of 1 m; '
+       || (SELECT group_concat(judged_frames, ', ') FROM motions) || ' frames checked, ' || timed_frames
        || ' timed, methods in random order; seed ' || seed AS landscape
 FROM plan;
 
@@ -72,20 +71,20 @@ SELECT motion_text AS "motion: fast objects move by", method, moved.ms AS "frame
        100 * missed_share AS "missed_share: missed [%]",
        ifnull(100 * interval_low(missed, contacts), 0) AS "missed_low: at least [%]",
        ifnull(100 * interval_high(missed, contacts), 100) AS "missed_high: at most [%]",
-       1.0 * invented / movers AS "false: false pairs an object",
-       iif(cells > 0, 1.0 * cells / movers, NULL) AS "cells: cells or boxes searched an object",
-       iif(tests > 0, 1.0 * tests / movers, NULL) AS "tests: tests an object",
+       1.0 * invented / movers AS "false: false pairs per object",
+       iif(cells > 0, 1.0 * cells / movers, NULL) AS "cells: cells or boxes searched per object",
+       iif(tests > 0, 1.0 * tests / movers, NULL) AS "tests: tests per object",
        iif(tells_time AND contacts > 0, time_error, NULL)
-           AS "time_error: worst time of contact [frames]"
+           AS "time_error: largest error of times of contact [frames]"
 FROM moved LEFT JOIN (SELECT motion_number AS at, min(number), ms FROM moved
                       WHERE origin = 'bullet' AND exact GROUP BY at) AS bullet ON at = motion_number
 ORDER BY motion_number, number;
 
 /* {"chart": "P1-tunnelling",
-    "title": "Contacts of bullets with walls that are detected, by the way of the bullet in a frame",
+    "title": "Detected contacts of bullets with walls, by the distance that a bullet flies in a frame",
     "settings": "{walls}", "x": "ratio log", "y": "detected", "series": "method", "low": "low",
     "high": "high", "theory": "theory"} */
-SELECT ratio AS "ratio: step v dt [T + 2r, wall and bullet]", method,
+SELECT ratio AS "ratio: distance v dt [wall thickness T + bullet diameter 2r]", method,
        percent(detected, contacts) AS "detected: contacts detected, bodies stopped [%]",
        100 * interval_low(detected, contacts) AS "low: at least [%]",
        100 * interval_high(detected, contacts) AS "high: at most, 95 % sure [%]",
@@ -109,10 +108,10 @@ SELECT 'P1-tunnelling: ' || walls || '.' FROM texts
 UNION ALL
 SELECT 'P1-false: ' || landscape || '.' FROM texts
 UNION ALL VALUES
-('Contacts that last from the frame before do not count, for any method. Discrete methods know the boxes at the end of the frame.'),
-('In the paper''s methods, objects that share a cell count if the boxes around their ways overlap. The grid stores resting objects once, is given its cell size, and keeps no pairs from frame to frame; the other methods keep pairs.'),
+('Contacts that began in an earlier frame do not count, for any method. Discrete methods know only the boxes at the end of the frame.'),
+('In the paper''s methods, two objects that share a cell are a pair if the boxes around their paths overlap. The paper''s grid stores resting objects once, has a given cell size, and keeps no pairs between frames; the other methods keep pairs.'),
 ('The false pairs of btDbvtBroadphase, united, include pairs that it keeps from earlier frames.'),
-('Bullet''s bodies are spheres without gravity; with CCD, their motion threshold and swept sphere radius are their radius. A body is stopped if it is not behind the wall at the end.');
+('Bullet''s bodies are spheres without gravity; with CCD, their motion threshold and swept sphere radius are their radius. A body counts as stopped if it is not behind the wall at the end.');
 
 /* {"table": "bullets at walls"} */
 SELECT method AS "method: bullets at walls: method", contacts, missed AS "missed: missed contacts",
@@ -128,12 +127,12 @@ ORDER BY number;
 /* {"table": "fast movers"} */
 SELECT "motion: fast objects move by", method, "frame_ms: frame [ms]",
        "ratio: frame [times Bullet's, united and tested]", contacts, "missed_share: missed [%]",
-       "false: false pairs an object", "cells: cells or boxes searched an object",
-       "tests: tests an object", "time_error: worst time of contact [frames]"
+       "false: false pairs per object", "cells: cells or boxes searched per object",
+       "tests: tests per object", "time_error: largest error of times of contact [frames]"
 FROM shown_moves;
 
 /* {"checks": "the line of theory; of intervals that hold the truth in 95 of 100 cases, 15 of 100 fail next to never"} */
-SELECT 'Discrete detection lies on the line min(1, (T + 2r) / (v dt)): the 95 % intervals of at least 85 % of the points hold it',
+SELECT 'Discrete detection lies on the line of theory, min(1, (T + 2r) / (v dt)): the line is in the 95 % intervals of at least 85 % of the points',
        EXISTS (SELECT * FROM at_walls) AND (count(*) = 0 OR min(within >= 0.85 * points)),
        ifnull(group_concat(method || ': ' || thousands(within) || ' of ' || thousands(points)
                            || ' points', '; '), '')
@@ -143,24 +142,24 @@ FROM (SELECT method, count(*) AS points,
       FROM at_walls JOIN methods USING (number, method) WHERE discrete GROUP BY number ORDER BY number);
 
 /* {"checks": "promises"} */
-SELECT 'Methods that promise every contact miss none', count(*) = 0 OR min(missed = 0),
+SELECT 'Methods that promise to find every contact miss none', count(*) = 0 OR min(missed = 0),
        ifnull(group_concat(method || ': ' || thousands(missed) || ' of ' || thousands(contacts), '; '), '')
 FROM (SELECT * FROM did WHERE misses_nothing ORDER BY number)
 UNION ALL
-SELECT 'Methods that promise contacts only list no other pairs', count(*) = 0 OR min(invented = 0),
+SELECT 'Methods that promise to list only contacts list no other pairs', count(*) = 0 OR min(invented = 0),
        ifnull(group_concat(method || ': ' || thousands(invented), '; '), '')
 FROM (SELECT * FROM did WHERE invents_nothing ORDER BY number)
 UNION ALL
 SELECT 'Exact methods list the same pairs, frame by frame', count(*) = 0 OR min(unlike = 0),
        ifnull(group_concat(method || ': '
-                           || iif(is_first, 'what the others are compared with',
+                           || iif(is_first, 'the reference for the others',
                                   thousands(unlike) || ' of ' || thousands(frames) || ' frames differ'),
                            '; '), '')
 FROM (SELECT *, number = min(number) OVER () AS is_first FROM did WHERE compared ORDER BY number)
 UNION ALL  -- rounded to double, a time is off by a few parts in 2^53
-SELECT 'Times of contact are true but for the rounding to double, 1e-15 of them',
+SELECT 'Times of contact are exact except for rounding to double: the relative error is at most 1e-15',
        count(*) = 0 OR min(time_error <= 1e-15),
-       ifnull(group_concat(method || ': ' || number(time_error) || ' at worst in ' || thousands(contacts),
+       ifnull(group_concat(method || ': ' || number(time_error) || ' at worst in ' || thousands(contacts) || ' contacts',
                            '; '), '')
 FROM (SELECT * FROM did WHERE tells_time ORDER BY number);
 
@@ -180,7 +179,7 @@ SELECT 'Bullets at walls: '
 FROM (SELECT method, sum(contacts) AS contacts, sum(missed) AS missed
       FROM at_walls GROUP BY number ORDER BY number)
 UNION ALL
-SELECT 'Bodies in Bullet''s world that came out behind the wall'
+SELECT 'Bodies in Bullet''s world that ended behind the wall'
        || group_concat(iif(continuous, '; with ', ': without ') || 'continuous collision detection '
                        || thousands(tunnelled) || ' of ' || thousands(bodies), '')
        || '.'
@@ -191,13 +190,13 @@ FROM (SELECT continuous, sum(tunnelled) AS tunnelled, sum(bodies) AS bodies
 WITH fastest AS (
     SELECT motion_number, origin, method || ' in ' || ms(min(moved.ms)) || ' ms' AS sentence
     FROM moved WHERE missed + invented = 0 GROUP BY motion_number, origin)
-SELECT 'At ' || motion_text || ', the fastest that erred nowhere is, of ours, '
+SELECT 'The fastest methods without errors at ' || motion_text || ': hashphase: '
        || ifnull((SELECT sentence FROM fastest WHERE origin = 'ours'
                   AND fastest.motion_number = moved.motion_number), 'none')
-       || '; with the paper''s grid, '
+       || '; the paper''s grid: '
        || ifnull((SELECT sentence FROM fastest WHERE origin = 'paper'
                   AND fastest.motion_number = moved.motion_number), 'none')
-       || '; of Bullet''s, '
+       || '; Bullet: '
        || ifnull((SELECT sentence FROM fastest WHERE origin = 'bullet'
                   AND fastest.motion_number = moved.motion_number), 'none')
        || '.'

@@ -24,11 +24,11 @@ CREATE VIEW seen AS SELECT 1e-3 AS radii;
 CREATE VIEW depth_texts AS
 SELECT rests.rowid AS rest,
        'sinks in by ' || iif(depth <= radii, 'less than 0.1 % of r', number(100 * depth) || ' % of r')
-       || ', '
+       || ' (worst: '
        || iif(worst_depth <= radii, 'less than 0.1 % of r', number(100 * worst_depth) || ' % of r')
-       || ' at worst; hangs '
+       || '); hangs '
        || iif(height <= radii, 'less than 0.1 % of r', number(100 * height) || ' % of r')
-       || ' above' AS depth_text
+       || ' above the ground' AS depth_text
 FROM rests, seen;
 
 -- With the time of a frame, and for a sphere.
@@ -43,8 +43,8 @@ CREATE VIEW bullet AS SELECT * FROM timed WHERE method = 'Bullet: sphere swept d
 
 CREATE VIEW shown_times AS
 SELECT timed.name AS "configuration: method, on hills", timed.method AS "method: kind",
-       timed.ns AS "time: a sphere [ns]", timed.low AS "low: 5th percentile [ns]",
-       timed.high AS "high: 95th percentile [ns]", timed.ns / bullet.ns AS "ratio: a sphere [times Bullet's sweep]",
+       timed.ns AS "time: time per sphere [ns]", timed.low AS "low: 5th percentile [ns]",
+       timed.high AS "high: 95th percentile [ns]", timed.ns / bullet.ns AS "ratio: time per sphere [times Bullet's sweep]",
        timed.depth AS "depth: mean depth [share of r]", timed.worst_depth AS "worst_depth: worst depth [share of r]",
        timed.height AS "height: mean height above [share of r]",
        timed.worst_height AS "worst_height: worst height [share of r]",
@@ -54,9 +54,9 @@ FROM timed LEFT JOIN bullet ORDER BY timed.rowid;
 /* {"settings": "mesh, ground, truth, points"} */
 SELECT mesh || '.' FROM texts
 UNION ALL VALUES
-('Slopes are one plane; terraces are flat, go up, are flat and go down, over 4 m each; hills are random, up to 56 m high.'),
-('Truth: the nearest points of all triangles, in long double, show how deep a sphere is in the ground, or how far above. Judged spheres ask from 2 m above their place of rest, timed spheres from 2 m above the highest point.'),
-('Points that ask for their triangle are anywhere, on shared edges (to single precision), and on shared corners.');
+('A slope is one plane. Terraces are flat, go up, are flat, and go down, over 4 m each. Hills are random, up to 56 m high.'),
+('Truth: the nearest points of all triangles, in long double, give the depth of a sphere in the ground, or its height above the ground. Checked spheres start 2 m above their rest position, timed spheres start 2 m above the highest point.'),
+('Methods also find the triangle of points: points anywhere, points on shared edges (within single precision), and points on shared corners.');
 
 /* {"table": "slopes"} */
 SELECT plane.slope AS "slope: slope [degrees]", plane.method,
@@ -93,7 +93,7 @@ SELECT slope AS "slope: slope [degrees]", method,
        no_ground_percent AS "no_ground: no ground found [%]", theory AS "theory: r (1 - n_y) [share of r]"
 FROM rests WHERE kind = 'terraces' ORDER BY rowid;
 
-/* {"chart": "P9-points", "title": "Points on the ground without a triangle found",
+/* {"chart": "P9-points", "title": "Points on the ground for which a method finds no triangle",
     "settings": "{mesh}; hills, vertices moved by up to 0.3 m", "mark": "point", "x": "place names",
     "y": "no_ground", "series": "method", "low": "low", "high": "high"} */
 SELECT place AS "place: points", method, percent(no_ground, points) AS "no_ground: no ground found [%]",
@@ -102,7 +102,7 @@ SELECT place AS "place: points", method, percent(no_ground, points) AS "no_groun
        iif(told > 0, percent(wrong, points), NULL) AS "wrong_triangle: wrong triangle [%]"
 FROM points;
 
-/* {"chart": "P9-time", "title": "Depth of spheres in hills against the time of a sphere",
+/* {"chart": "P9-time", "title": "Depth of spheres in hills against the time per sphere",
     "settings": "{mesh}; medians of at least 60 frames", "mark": "point", "x": "time log",
     "y": "depth log0", "series": "method", "label": "configuration", "front": true} */
 SELECT * FROM shown_times;
@@ -116,15 +116,15 @@ asked AS (
     SELECT method, sum(points) AS all_points, sum(no_ground) AS lost_points, sum(wrong) AS all_wrong
     FROM points GROUP BY method)
 SELECT claim, holds, evidence FROM (
-    SELECT number, 1 AS part, method || ': spheres touch the ground, to a thousandth of r' AS claim,
+    SELECT number, 1 AS part, method || ': spheres touch the ground, within 0.001 r' AS claim,
            all_spheres > 0 AND worst <= radii AS holds,
-           'off by ' || number(worst) || ' r at worst of ' || thousands(all_spheres) AS evidence
+           'off by ' || number(worst) || ' r at worst, of ' || thousands(all_spheres) || ' spheres' AS evidence
     FROM rested, seen WHERE must_rest
     UNION ALL
-    SELECT number, 2, method || ' finds ground, and the right triangle, everywhere',
+    SELECT number, 2, method || ' finds ground and the right triangle everywhere',
            all_points > 0 AND lost + lost_points + all_wrong = 0,
            thousands(lost + lost_points) || ' without ground, ' || thousands(all_wrong)
-           || ' with a wrong triangle, of ' || thousands(all_spheres + all_points)
+           || ' with a wrong triangle, of ' || thousands(all_spheres + all_points) || ' queries'
     FROM rested JOIN asked USING (method) WHERE must_rest
     UNION ALL
     SELECT number, 3, method || ': on slopes the depth is r (1 - n_y)', off <= radii,
@@ -133,7 +133,7 @@ SELECT claim, holds, evidence FROM (
 ORDER BY number, part;
 
 /* {"choices": "what nobody sees is no error"} */
-SELECT 'Standing on hills, ' || thousands(spheres_per_frame) || ' spheres: depth by r', name, frame_ms,
+SELECT 'Standing on hills, ' || thousands(spheres_per_frame) || ' spheres: depth [r]', name, frame_ms,
        iif(worst_depth <= radii, 0, depth), depth_text, ours, low * spheres_per_frame / 1e6
 FROM timed, plan, seen ORDER BY timed.rowid;
 
@@ -143,14 +143,14 @@ FROM rests JOIN depth_texts ON rest = rests.rowid
 WHERE kind = 'terraces' AND slope = 60 ORDER BY rests.rowid;
 
 /* {"conclusions": "of points"} */
-SELECT method || ': of points ' || place || ' ' || thousands(no_ground) || ' have no ground and '
-       || thousands(wrong) || ' a wrong triangle, of ' || thousands(points) || '.'
+SELECT method || ', points ' || place || ': ' || thousands(no_ground) || ' without ground and '
+       || thousands(wrong) || ' with a wrong triangle, of ' || thousands(points) || ' points.'
 FROM points WHERE no_ground + wrong > 0;
 
 /* {"conclusions": "of times, beside the fastest and Bullet's sweep"} */
 WITH takes AS (
-    SELECT *, name || ' takes ' || ms(ns) || ' ns a sphere' AS sentence FROM timed)
-SELECT takes.sentence || '; the fastest, ' || fastest.sentence
+    SELECT *, name || ' takes ' || ms(ns) || ' ns per sphere' AS sentence FROM timed)
+SELECT takes.sentence || '; the fastest method, ' || fastest.sentence
        || ifnull('; ' || sweep.sentence, '') || '.'
 FROM takes JOIN (SELECT sentence, min(ns) FROM takes) AS fastest
      LEFT JOIN takes AS sweep ON sweep.method = 'Bullet: sphere swept down'

@@ -89,10 +89,10 @@ TEST(QueryExperiments, NoticeABrokenMethod) {
     expectNoticed({
         {"visible objects are not drawn",
          [=] { return culling({with(forgetful, exactCulling)}); },
-         {"draws all that is visible", "draws what just touches"}},
-        {"an exact method draws in vain",
+         {"draws every visible object", "only touch the view"}},
+        {"an exact method draws needlessly",
          [=] { return culling({with(drawingAll, exactCulling)}); },
-         {"draws nothing else"}},
+         {"draws no invisible object"}},
         {"each eighth hit is missed",
          [=] {
              return picking(
@@ -103,7 +103,7 @@ TEST(QueryExperiments, NoticeABrokenMethod) {
                        }),
                        gridRays)});
          },
-         {"misses no box", "puts first"}},
+         {"misses no box", "puts the nearest box first"}},
         {"the farthest box is put first",
          [=] {
              return picking({with(changingHits([](std::vector<RayHit>& hits) {
@@ -113,7 +113,7 @@ TEST(QueryExperiments, NoticeABrokenMethod) {
                                   }),
                                   gridRays)});
          },
-         {"puts first"}},
+         {"puts the nearest box first"}},
         {"spheres are in the ground",
          [] { return raised("Terrain, one by one", -0.01F); },
          {"touch"}},
@@ -145,8 +145,8 @@ TEST(CullingExperiment, SaysInWhichSettingMostIsLost) {
         }
     }
     EXPECT_EQ(findings.conclusions.at(0), "paper: two corners loses up to " +
-                                              valueText(worst.first) + " % of what is visible (" +
-                                              worst.second + ").");
+                                              valueText(worst.first) +
+                                              " % of the visible objects (" + worst.second + ").");
 }
 
 }  // namespace
