@@ -28,7 +28,7 @@ INSERT INTO parts VALUES
 ('work', 'terrain', 'whole', 'groundsAsked', '', ' bodies'),
 ('work', 'terrain', 'whole', 'trianglesTested', ', ', ' triangles'),
 ('work', 'pairs', 'whole', 'boxesTested', '', ' boxes tested'),
-('work', 'pairs', 'whole', 'pairsBorn', ', ', ' births'),
+('work', 'pairs', 'whole', 'pairsBorn', ', ', ' new pairs'),
 ('work', 'response', 'whole', 'contactsTested', '', ' contacts'),
 ('work', 'response', 'whole', 'contactsSolved', ', ', ' bounces'),
 ('work', 'sweep', 'whole', 'sweepsSolved', '', ' sweeps'),
@@ -49,22 +49,22 @@ INSERT INTO parts VALUES
 ('work', 'radar', 'whole', 'radarBoxesTested', ', ', ' boxes'),
 ('lost', 'motion', 'whole', 'bodiesMoved', '', ' bodies stand still'),
 ('lost', 'terrain', 'less', 'offGround', '', ' bodies off the ground ('),
-('lost', 'terrain', 'whole', 'offGround', '', ' with it)'),
+('lost', 'terrain', 'whole', 'offGround', '', ' with terrain)'),
 ('lost', 'pairs', 'whole', 'present', '', ' unknown pairs'),
 ('lost', 'response', 'less', 'interpenetrating', '', ' pairs inside each other ('),
-('lost', 'response', 'whole', 'interpenetrating', '', ' with it)'),
+('lost', 'response', 'whole', 'interpenetrating', '', ' with response)'),
 ('lost', 'sweep', 'whole', 'sweepersStopped', '', ' bodies fly through what they hit'),
-('lost', 'sleeping', 'more', 'bodiesMoved', '', ' more bodies move unseen'),
+('lost', 'sleeping', 'more', 'bodiesMoved', '', ' more bodies move invisibly'),
 ('lost', 'picking', 'whole', 'picks', '', ' clicks without an answer'),
 ('lost', 'boxSelection', 'whole', 'selections', '', ' rectangles without an answer'),
-('lost', 'culling', 'whole', 'hidden', '', ' bodies drawn in vain'),
-('lost', 'culling', 'late', 'framesCulledLate', '; late in ', ' % of frames with it'),
-('lost', 'proximity', 'whole', 'objects', '', ' agents that see no other'),
-('lost', 'proximity', 'late', 'agentsLate', '; ', ' are late with it'),
+('lost', 'culling', 'whole', 'hidden', '', ' bodies drawn needlessly'),
+('lost', 'culling', 'late', 'framesCulledLate', '; late in ', ' % of frames with culling'),
+('lost', 'proximity', 'whole', 'objects', '', ' agents that see no other agent'),
+('lost', 'proximity', 'late', 'agentsLate', '; ', ' are late with proximity'),
 ('lost', 'zones', 'whole', 'zonesTested', '', ' zones that report nothing'),
-('lost', 'zones', 'late', 'zonesLate', '; ', ' are late with it'),
+('lost', 'zones', 'late', 'zonesLate', '; ', ' are late with zones'),
 ('lost', 'radar', NULL, NULL, 'no radar', ''),
-('lost', 'radar', 'late', 'radarsLate', '; late in ', ' % of frames with it');
+('lost', 'radar', 'late', 'radarsLate', '; late in ', ' % of frames with radar');
 
 CREATE TABLE said AS
 SELECT effect, group_concat(iif(said = 'work', text, NULL), '') AS work,
@@ -107,9 +107,9 @@ ORDER BY compared.rowid;
 -- Next to the prices: why a time is below zero.
 CREATE TABLE below_zero AS
 SELECT effect || ' ' || which || ', ' || ms(ms) || ' ms: '
-       || iif(high > 0, 'less than the frames differ (' || ms(low) || ' to ' || ms(high)
-                        || ' ms), so nothing that can be measured.',
-              'a frame takes less time with the effect, which spares others more work than it takes.') AS sentence
+       || iif(high > 0, 'within the variation between frames (' || ms(low) || ' to ' || ms(high)
+                        || ' ms), so too small to measure.',
+              'a frame takes less time with the effect: the effect saves other effects more time than it takes.') AS sentence
 FROM (SELECT * FROM differences WHERE ms < 0 ORDER BY price, which);
 
 CREATE TABLE checks AS
@@ -120,7 +120,7 @@ FROM (SELECT count(*) AS zeros,
              group_concat(iif(number = 0, NULL, ' ' || name || ' with ' || effects || ';'), '') AS strays
       FROM numbers JOIN variants ON variants.rowid = variant WHERE NOT is_declared)
 UNION ALL
-SELECT 'A declared effect finds the same results, to the last bit, whatever else is declared', differences = 0,
+SELECT 'A declared effect finds bit-identical results, whichever other effects are declared', differences = 0,
        thousands(differences) || ' of ' || thousands(comparisons) || ' results differ'
 FROM (SELECT ifnull(sum(differs), 0) AS differences, count(effect) AS comparisons FROM results);
 
@@ -131,7 +131,7 @@ FROM run, variants WHERE variants.rowid = 1;
 
 /* {"verdict": "all"} */
 SELECT texts.frames || ' frames: the whole scene ' || ms(ms) || ' ms a frame, ' || bytes(bytes)
-       || iif(all_hold, '; what is not declared costs nothing', '; A CHECK FAILED, see above'),
+       || iif(all_hold, '; undeclared effects cost nothing', '; A CHECK FAILED, see above'),
        all_hold
 FROM texts, spreads, (SELECT min(holds) AS all_hold FROM checks) WHERE variant = 1;
 
@@ -144,7 +144,8 @@ FROM prices;
 
 /* {"rows": "below"} */
 SELECT '' UNION ALL
-SELECT 'alone: with what it needs, less these; in all: the whole scene, less all but it and what needs it'
+SELECT 'alone: a scene of the effect and of the effects that it needs, minus a scene of these needed effects'
+UNION ALL SELECT 'in all: the whole scene, minus the scene without the effect and without the effects that need it'
 UNION ALL SELECT sentence FROM below_zero
 UNION ALL SELECT '' UNION ALL
 SELECT substr(effect || '              ', 1, 14) || work || char(10) || '              without: ' || lost
@@ -158,9 +159,9 @@ UNION ALL SELECT stopped || ' after ' || frames || ' frames.' FROM run WHERE sto
 -- --- On the page ----------------------------------------------------------------------------------
 
 /* {"sentences": "what they are", "section": "The price list"} */
-SELECT 'Alone: a scene of the effect and those that it needs, minus a scene of these. Within all: the whole scene, '
-       || 'minus the scene without the effect and without those that need it. The two differ if effects share '
-       || 'work: one update of the grid serves all effects.'
+SELECT 'Alone: a scene of the effect and of the effects that it needs, minus a scene of these needed effects. '
+       || 'Within all: the whole scene, minus the scene without the effect and without the effects that need it. '
+       || 'The two prices differ if effects share work: one update of the grid serves all effects.'
 UNION ALL SELECT sentence FROM below_zero;
 
 /* {"conclusions": "time limit", "section": "The price list"} */
@@ -170,8 +171,8 @@ SELECT stopped || ' after ' || frames || ' frames.' FROM texts WHERE stopped IS 
 SELECT claim, holds, evidence FROM checks;
 
 /* {"sentences": "what is drawn", "section": "The prices, drawn"} */
-SELECT 'Bars are medians. Lines reach from the 5th to the 95th percentile of the frames. A bar below zero: a '
-       || 'frame takes less time with the effect than without it; the price list says why.';
+SELECT 'Bars show medians, lines the 5th to the 95th percentile of the frames. If a bar is below zero, a frame '
+       || 'takes less time with the effect than without the effect; the price list explains why.';
 
 /* {"chart": "effects-time", "title": "Time that each effect takes",
     "settings": "{scene}; medians of {frames} frames", "mark": "bar", "x": "effect names", "y": "amount",

@@ -89,7 +89,7 @@ TEST(EffectsCommand, PrintsThePriceOfEachEffectAndWhatIsLostWithoutIt) {
                              "culling", "proximity", "zones"}) {
         EXPECT_TRUE(has(output.out, "\n" + std::string(name) + " ")) << name;
     }
-    EXPECT_TRUE(has(output.out, "what is not declared costs nothing"));
+    EXPECT_TRUE(has(output.out, "undeclared effects cost nothing"));
     EXPECT_FALSE(has(output.out, "BROKEN"));
     EXPECT_TRUE(has(readFile(json), "\"schema\": \"hashphase-effects\""));
     EXPECT_EQ(readFile(csv).rfind("effects,frame_ms,", 0), 0U);
@@ -186,7 +186,7 @@ TEST(EffectPrices, TellWhatIsLateByDeclaration) {
     }
     EXPECT_LT(priced.mean("bodiesMoved"), priced.mean("bodiesMoved", "sleeping"));
     const std::string lost = priced.ask("SELECT group_concat(lost, '; ') FROM prices");
-    EXPECT_TRUE(has(lost, " are late with it; ")) << lost;
+    EXPECT_TRUE(has(lost, " are late with proximity; ")) << lost;
     EXPECT_TRUE(has(lost, "no radar; late in ")) << lost;
 }
 
@@ -216,10 +216,10 @@ TEST(EffectPrices, ExplainATimeBelowZeroBesideIt) {
     const std::vector<std::string>& onPage = found.sections.at(0).sentences;
     const std::vector<std::string> onTerminal = sentencesOf(found.rows.at("below"));
     for (const char* sentence :
-         {"sweep within all, -1.00 ms: a frame takes less time with the effect, which spares "
-          "others more work than it takes.",
-          "response within all, -0.250 ms: less than the frames differ (-0.250 to 0.500 ms), so "
-          "nothing that can be measured."}) {
+         {"sweep within all, -1.00 ms: a frame takes less time with the effect: the effect saves "
+          "other effects more time than it takes.",
+          "response within all, -0.250 ms: within the variation between frames (-0.250 to 0.500 "
+          "ms), so too small to measure."}) {
         EXPECT_EQ(std::ranges::count(onPage, sentence), 1) << sentence;
         EXPECT_EQ(std::ranges::count(onTerminal, sentence), 1) << sentence;
     }
