@@ -29,7 +29,7 @@ INSERT INTO phases VALUES
 (2, 'visibility', 14, 'frustum culling and the draw calls of all visible objects',
  'hashing all spheres again, and listing the spheres that a free camera sees; nothing is drawn'),
 (3, 'AI', 15, 'counting, for each object, the colours within a radius, and taking the rarest',
- 'hashing all spheres again, counting the colours within the radius of each sphere, and taking the rarest; the AI cells of hashphase follow the radius, whatever the column');
+ 'hashing all spheres again, counting the colours within the radius of each sphere, and taking the rarest; hashphase chooses its AI cells from the radius, in every column');
 
 -- Frames a second on a Pentium 4, 3.2 GHz: un-optimized, then with cells of 5 to 100 m. "60+" is at least
 -- 60, "<1" below 1: what was measured is not known, so these never become numbers. The last one of all is
@@ -167,17 +167,17 @@ FROM (SELECT ours.ms / paper.ms AS ratio,
 CREATE TABLE claimed (number, phase, columns, which, rival);
 INSERT INTO claimed VALUES
 (1, 'collision', 'grid', 'of collision, at the same cell size', 'the paper''s grid'),
-(2, 'AI', 'grid', 'of AI, by cells that follow the radius', 'the paper''s grid'),
-(3, 'collision', 'unoptimized', 'of un-optimized collision and AI, by automatic cells', 'un-optimized'),
-(3, 'AI', 'unoptimized', 'of un-optimized collision and AI, by automatic cells', 'un-optimized');
+(2, 'AI', 'grid', 'of AI, with cells chosen from the radius', 'the paper''s grid'),
+(3, 'collision', 'unoptimized', 'of un-optimized collision and AI, with automatic cells', 'un-optimized'),
+(3, 'AI', 'unoptimized', 'of un-optimized collision and AI, with automatic cells', 'un-optimized');
 
 CREATE VIEW real_time_sentences AS
 SELECT * FROM (
-    SELECT 'Slow cells ' || which || ': hashphase computes ' || sum(hashphase) || ' of ' || count(*)
+    SELECT 'Slow results ' || which || ': hashphase computes ' || sum(hashphase) || ' of ' || count(*)
            || ' in real time, ' || rival || ' on this machine ' || sum(paper) || '.' AS sentence
     FROM slow JOIN claimed USING (phase, columns) GROUP BY number ORDER BY number)
 UNION ALL
-SELECT 'Figure 14 is not counted: the paper''s times include drawing, and nothing is drawn here. Of its slow cells '
+SELECT 'Figure 14 is not counted: the paper''s times include drawing, and nothing is drawn here. Of its slow results, '
        || 'un-optimized computes ' || sum(paper) || ' of ' || count(*)
        || ' in real time on this machine, and hashphase ' || sum(hashphase) || '.'
 FROM slow WHERE phase = 'visibility' AND columns = 'unoptimized' HAVING count(*) > 0;
@@ -191,11 +191,11 @@ SELECT 'Every method finds what brute force finds in the same frame' AS claim,
                              '; '),
                 thousands(total(compared.timed)) || ' of ' || thousands(total(timed.frames))
                 || ' timed frames checked, and '
-                || thousands(total(compared.frames) - total(compared.timed)) || ' that are not timed')
+                || thousands(total(compared.frames) - total(compared.timed)) || ' untimed')
        AS evidence
 FROM timed LEFT JOIN compared USING (run)
 UNION ALL
-SELECT 'Whatever the bounding volume, the same sticks touch', min(is_right),
+SELECT 'The same sticks touch with every bounding volume', min(is_right),
        coalesce('wrong with' || group_concat(iif(is_right, NULL, ' ' || volume), ''),
                 thousands(max(pairs)) || ' pairs touch')
 FROM volume_checks GROUP BY NULL;
@@ -216,47 +216,47 @@ FROM timed JOIN plan WHERE part = 'figure' AND timed.frames BETWEEN 1 AND plan.f
 ORDER BY timed.rowid;
 
 CREATE VIEW observations AS
-SELECT 'Hashing, which a whole frame does once, counts in each phase. Without it, visibility of ' || objects
-       || ' takes' || looks || '.' AS sentence
+SELECT 'Each phase includes hashing, which a whole frame does once. Without hashing, visibility of ' || objects
+       || ' objects takes' || looks || '.' AS sentence
 FROM times_of_most WHERE phase = 'visibility'
 UNION ALL
-SELECT 'Of a collision frame of ' || objects || ', the ground takes' || stands || '.'
+SELECT 'In a collision frame of ' || objects || ' objects, finding the ground takes' || stands || '.'
 FROM times_of_most WHERE phase = 'collision'
 UNION ALL
-SELECT thousands(count(*)) || ' of the figures'' values are of fewer than ' || frames
-       || ' frames, because they take long; the page and the CSV say which.'
+SELECT thousands(count(*)) || ' values of the figures are medians of fewer than ' || frames
+       || ' frames, because these frames take long; the page and the CSV list these values.'
 FROM few_frames, plan HAVING count(*) > 0
 UNION ALL
-SELECT 'Hashphase loses in ' || CAST(lost AS INTEGER) || ' of ' || compared
-       || ' cells, where the paper''s grid is faster at the same cell size; most in ' || worst
-       || ', which takes hashphase ' || fixed(ratio, 1) || ' times as long.'
+SELECT 'At the same cell size, the paper''s grid is faster than hashphase in ' || CAST(lost AS INTEGER) || ' of '
+       || compared || ' comparisons. At worst (' || worst || '), hashphase takes ' || fixed(ratio, 1)
+       || ' times as long.'
 FROM losses WHERE lost > 0;
 
 CREATE VIEW how_it_was_measured AS
-SELECT 'Spheres of radius 1 roam a random terrain: up to ' || group_concat(text, '; ') || '.' AS sentence
-FROM (SELECT thousands(max(objects)) || ' on ' || fixed(side, 0) || ' x ' || fixed(side, 0) || ' m, of '
+SELECT 'Spheres of radius 1 m roam a random terrain: up to ' || group_concat(text, '; ') || '.' AS sentence
+FROM (SELECT thousands(max(objects)) || ' on ' || fixed(side, 0) || ' x ' || fixed(side, 0) || ' m with '
              || thousands(triangles) || ' triangles' AS text
       FROM runs WHERE part = 'figure' GROUP BY side ORDER BY side)
 UNION ALL VALUES
-('Every phase is timed on its own, on one thread. Hashing all objects again counts in each phase, drawing in none. Triangles are hashed once.'),
-('All methods see the same frames: the bounces and colours that they find are compared, and the next frame does not depend on them.'),
-('Un-optimized compares everything with everything, and looks for a sphere''s triangle until one has it. The paper''s grid is a map of square cells, wiped and filled in every frame, hashed by multiplication and truncation, its errors corrected: all cells that a box touches, each pair once.'),
-('Visibility by the paper''s grid is that of its free camera: every cell, as high as the domain, against the frustum; all objects of a cell that is wholly inside, and those that touch of one that is cut. What the paper timed is its camera from above, between two corners of the screen, and drawing.')
+('Every phase is timed separately, on one thread. Each phase includes hashing all objects again; no phase draws. Triangles are hashed once.'),
+('All methods get the same frames. The bounces and colours that they find are compared, but do not affect the next frame.'),
+('Un-optimized compares every pair of objects, and tests one triangle after another until it finds the triangle of a sphere. The paper''s grid is a map of square cells, cleared and filled in every frame, and hashed by multiplication and truncation. Its errors are corrected: a box is in all cells that it touches, and each pair is listed once.'),
+('Visibility by the paper''s grid is for the paper''s free camera. Every cell, as high as the domain, is tested against the frustum. All objects of a cell inside the frustum are visible; the objects of a cut cell are tested themselves. The paper timed its camera from above, between two corners of the screen, and drawing.')
 UNION ALL
 SELECT 'AI counts ' || colours || ' colours within ' || fixed(radius, 1)
-       || ' m, from centre to centre; the paper does not give its radius. The cells of hashphase''s AI follow the radius: a fixed cell size only matters for refiling.'
+       || ' m, from centre to centre; the paper does not state its radius. hashphase chooses its AI cells from the radius: a fixed cell size only affects hashing the objects again.'
 FROM plan
 UNION ALL
 SELECT 'Medians of up to ' || thousands(frames) || ' different frames, '
-       || iif(is_hurried, 'hashphase in a round of its own before the rivals, because the time is limited',
-              'all methods in each, in a random order')
-       || '; of what takes longer fewer, but at least ' || fewest_frames || '. Seed ' || seed || '.'
+       || iif(is_hurried, 'hashphase first, then the other methods, because the time is limited',
+              'all methods in each frame, in a random order')
+       || '. Slow methods get fewer frames, but at least ' || fewest_frames || '. Seed ' || seed || '.'
 FROM plan
 UNION ALL
-SELECT 'In the last frame of a method that un-optimized does not run too, at most '
-       || thousands(spot_checked) || ' objects drawn at random are compared with brute force. Of more than '
+SELECT 'If un-optimized does not run in the last frame of a method, at most '
+       || thousands(spot_checked) || ' random objects of this frame are compared with brute force. Above '
        || thousands(most_brute_forced)
-       || ' objects nothing un-optimized is timed, and never more are compared.'
+       || ' objects, un-optimized is not timed, and no frame compares more objects than this.'
 FROM plan;
 
 CREATE VIEW texts AS
@@ -268,7 +268,7 @@ FROM plan;
 -- --- What is shown -------------------------------------------------------------------------------------
 
 /* {"verdict": "real time, and whether all is right"} */
-SELECT ifnull((SELECT 'In real time: ' || sum(hashphase) || ' of the paper''s ' || count(*) || ' slow cells. '
+SELECT ifnull((SELECT 'In real time: ' || sum(hashphase) || ' of the paper''s ' || count(*) || ' slow results. '
                FROM slow JOIN claimed USING (phase, columns) HAVING count(*) > 0), '')
        || 'All methods found the same as brute force: '
        || CASE holds WHEN 1 THEN 'yes' WHEN 0 THEN 'NO, see above' ELSE 'not checked' END, holds
@@ -320,7 +320,7 @@ FROM timed WHERE part = 'figure' AND phase = :phase AND ms IS NOT NULL AND (cell
 ORDER BY timed.method = 'hashphase', timed.method = 'paper''s grid', cell IS NULL, cell, objects;
 
 /* {"sentences": "why", "section": "AI by radius"} */
-SELECT 'The paper does not give the radius of its agents. The number of neighbours, and so the cost, grows with the square of the radius.'
+SELECT 'The paper does not state the radius of its agents. The number of neighbours, and so the cost, grows with the square of the radius.'
 FROM timed WHERE part = 'radius' LIMIT 1;
 
 /* {"chart": "paper-radius", "title": "Time of an AI frame by radius",
@@ -345,7 +345,7 @@ SELECT * FROM radii;
 SELECT * FROM radii;
 
 /* {"sentences": "why", "section": "Cell size: time against memory"} */
-SELECT 'The paper expects small cells to be fast and to take more memory, because objects span more of them. It leaves the trade-off open. hashphase stores each object once, so its memory does not depend on the cell size; it sorts the objects of crowded cells.'
+SELECT 'The paper expects small cells to be fast and to take more memory, because objects span more cells. The paper leaves the trade-off open. hashphase stores each object once, so its memory does not depend on the cell size; it sorts the objects of crowded cells.'
 FROM timed WHERE part = 'cell size' LIMIT 1;
 
 /* {"conclusions": "what hashphase chooses", "section": "Cell size: time against memory"} */
@@ -368,7 +368,7 @@ ORDER BY timed.method = 'hashphase', timed.rowid;
 SELECT *, 50.0 AS "limit: 20 frames a second: 50 ms" FROM cell_sizes;
 
 /* {"chart": "paper-cell-memory", "title": "Memory of the collision phase by cell size",
-    "settings": "{sweep_objects} objects; all that a method keeps, its pairs and its terrain included",
+    "settings": "{sweep_objects} objects; all memory of a method, including its pairs and its terrain",
     "x": "cell log", "y": "mebibytes log", "series": "method",
     "section": "Cell size: time against memory"} */
 SELECT * FROM cell_sizes;
@@ -377,23 +377,23 @@ SELECT * FROM cell_sizes;
 SELECT * FROM cell_sizes;
 
 /* {"sentences": "what", "section": "Bounding volumes as a first pass"} */
-SELECT 'Sticks of 4 m, 0.4 m thick, turn in space. The grid holds the box of each volume. Pairs of overlapping boxes are candidates; pairs of overlapping volumes pass; the exact test finds the pairs that touch. A tight volume passes fewer pairs in vain, and takes longer to compare.'
+SELECT 'Sticks of 4 m, 0.4 m thick, turn in space. The grid holds the box of each volume. Pairs of overlapping boxes are candidates; pairs of overlapping volumes pass; the exact test finds the pairs that touch. A tight volume passes fewer false pairs, but takes longer to compare.'
 FROM volumes LIMIT 1;
 
 CREATE VIEW bounding_volumes AS
 SELECT volume AS "volume: first pass by", avg(candidates) AS "candidates: pairs from the grid",
-       avg(passed) AS "passed: pairs that pass", avg(passed) - avg(touching) AS "false: pairs that pass in vain",
+       avg(passed) AS "passed: pairs that pass", avg(passed) - avg(touching) AS "false: false pairs: pass, but do not touch",
        avg(touching) AS "touching: pairs that touch", median(first_ms) AS "first_ms: first pass [ms]",
        median(exact_ms) AS "exact_ms: exact test [ms]",
        median(first_ms) + median(exact_ms) AS "ms: together [ms]"
 FROM volumes GROUP BY volume ORDER BY min(rowid);
 
-/* {"chart": "paper-volumes-pairs", "title": "Pairs that pass in vain",
+/* {"chart": "paper-volumes-pairs", "title": "False pairs: they pass, but do not touch",
     "settings": "{sticks} sticks, 30 m^3 for each; means of {volume_frames} frames", "mark": "bar",
     "x": "volume names", "y": "false", "section": "Bounding volumes as a first pass"} */
 SELECT * FROM bounding_volumes;
 
-/* {"chart": "paper-volumes-time", "title": "Time of a frame, the exact test included",
+/* {"chart": "paper-volumes-time", "title": "Time of a frame, including the exact test",
     "settings": "{sticks} sticks, 30 m^3 for each; medians of up to {volume_frames} frames; one thread",
     "mark": "bar", "x": "volume names", "y": "ms", "section": "Bounding volumes as a first pass"} */
 SELECT * FROM bounding_volumes;

@@ -119,19 +119,21 @@ TEST(PaperTallies, CountThePapersSlowCellsByPhaseAndMethod) {
 
 TEST(PaperReport, ClaimsTheSameCellSizeOfCollisionAloneAndCountsNoVisibility) {
     PaperReport report = reportOfRows(kFigureRows);
-    EXPECT_EQ(report.findings.verdict,
-              "In real time: 13 of the paper's 15 slow cells. All methods found the same as brute "
-              "force: yes");
+    EXPECT_EQ(
+        report.findings.verdict,
+        "In real time: 13 of the paper's 15 slow results. All methods found the same as brute "
+        "force: yes");
     EXPECT_EQ(
         asked(report.measured, "SELECT sentence FROM real_time_sentences"),
-        "Slow cells of collision, at the same cell size: hashphase computes 5 of 5 in real time, "
+        "Slow results of collision, at the same cell size: hashphase computes 5 of 5 in real time, "
         "the paper's grid on this machine 3.; "
-        "Slow cells of AI, by cells that follow the radius: hashphase computes 5 of 6 in real "
+        "Slow results of AI, with cells chosen from the radius: hashphase computes 5 of 6 in real "
         "time, the paper's grid on this machine 1.; "
-        "Slow cells of un-optimized collision and AI, by automatic cells: hashphase computes 3 of "
+        "Slow results of un-optimized collision and AI, with automatic cells: hashphase computes 3 "
+        "of "
         "4 in real time, un-optimized on this machine 1.; "
         "Figure 14 is not counted: the paper's times include drawing, and nothing is drawn here. "
-        "Of its slow cells un-optimized computes 2 of 2 in real time on this machine, and "
+        "Of its slow results, un-optimized computes 2 of 2 in real time on this machine, and "
         "hashphase 2.");
 }
 
@@ -146,7 +148,7 @@ TEST(PaperReport, IsPrintedInLinesThatFitTheTerminalWithAShortVerdict) {
         for (std::string line; std::getline(lines, line);) {
             EXPECT_LE(line.size(), static_cast<std::size_t>(most)) << line;
         }
-        EXPECT_NE(out.str().find("\nIn real time: 13 of the paper's 15 slow cells."),
+        EXPECT_NE(out.str().find("\nIn real time: 13 of the paper's 15 slow results."),
                   std::string::npos);
     }
 }
@@ -155,8 +157,8 @@ TEST(PaperReport, SaysOnWhichGroundHowManyRoam) {
     std::vector<FigureRow> rows = kFigureRows;
     rows.push_back({Phase::ai, 100'000, 1, 1, 1, "figure", 565.75});
     EXPECT_EQ(reportOfRows(rows).findings.sections.at(0).settings.at(0),
-              "Spheres of radius 1 roam a random terrain: up to 50,000 on 400 x 400 m, of 3,200 "
-              "triangles; 100,000 on 566 x 566 m, of 4,526 triangles.");
+              "Spheres of radius 1 m roam a random terrain: up to 50,000 on 400 x 400 m with 3,200 "
+              "triangles; 100,000 on 566 x 566 m with 4,526 triangles.");
 }
 
 TEST(PaperReport, DrawsTheLimitOfRealTimeAndNamesAnErrorBarOnlyWhereThereIsOne) {

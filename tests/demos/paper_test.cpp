@@ -164,7 +164,7 @@ TEST(PaperPhases, TellHowManyTimedFramesAreChecked) {
     const PaperReport report =
         reportOf({Phase::ai, 300, 3, 12}, std::array{MethodSpec{}}, quickEffort());
     EXPECT_EQ(report.findings.sections.at(0).checks.at(0).evidence,
-              "1 of 6 timed frames checked, and 1 that are not timed");
+              "1 of 6 timed frames checked, and 1 untimed");
     EXPECT_EQ(exitCodeOf(report), kExitOk);
 }
 
