@@ -12,7 +12,7 @@ ORDER BY cases.rowid;
 
 CREATE TABLE details AS
 SELECT id, ours, broadphase || ': ' || text
-       || iif(compared > 0, ' (' || thousands(compared) || ' answers looked for)', '')
+       || iif(compared > 0, ' (' || thousands(compared) || ' answers expected)', '')
        || iif(note <> '', '. ' || note, '') AS told
 FROM outcomes JOIN kinds USING (broadphase) ORDER BY outcomes.rowid;
 
@@ -24,8 +24,8 @@ GROUP BY broadphase HAVING sum(NOT holds) > 0 ORDER BY kinds.rowid;
 CREATE TABLE verdict AS
 SELECT iif(EXISTS (SELECT 1 FROM kinds WHERE ours),
            (SELECT ifnull(sum(holds), 0) || ' of ' || count(*) || ' hard cases hold' FROM judged),
-           'ours was not asked')
-       || ifnull('; Bullet''s broadphases do not: ' || (SELECT group_concat(told, ', ') FROM broken), '')
+           'hashphase was not tested')
+       || ifnull('; Bullet''s broadphases fail: ' || (SELECT group_concat(told, ', ') FROM broken), '')
        || left_out_text AS text,
        (SELECT min(holds) FROM judged) AS holds
 FROM run;
@@ -42,8 +42,8 @@ FROM (SELECT cases.rowid AS turn, cases.id, name, outcomes.rowid AS place, broad
 ORDER BY turn, place;
 
 CREATE VIEW texts AS
-SELECT '-n: n answers missing; +n: n answers too many; nx: cost, n times what the case compares it with; > n s: '
-       || 'not done within n s; -: the broadphase has no such query' AS legend;
+SELECT '-n: n answers missing; +n: n answers too many; nx: n times the cost of the reference; > n s: '
+       || 'not finished within n s; -: the broadphase has no such query' AS legend;
 
 /* {"verdict": "all"} */
 SELECT text, holds FROM verdict;
@@ -62,12 +62,12 @@ FROM judged, run WHERE is_explained OR holds = 0;
 -- --- On the page ----------------------------------------------------------------------------------
 
 /* {"sentences": "what is in a cell", "section": "What each one does"} */
-SELECT 'A row for each case, a column for each broadphase. The verdict: whether hashphase is as required. ' || legend
+SELECT 'A row for each case, a column for each broadphase. The verdict: whether hashphase meets the requirement. ' || legend
        || '.'
 FROM texts;
 
 /* {"graded": "What each broadphase does in each case",
-    "legend": ["exact, as required", "too many answers, too high a cost, or refused", "wrong, hangs, or crashes"],
+    "legend": ["exact, as required", "too many answers, too costly, or refused", "wrong, hangs, or crashes"],
     "section": "What each one does"} */
 SELECT id, name AS "case", broadphase, text, grade FROM cells;
 
