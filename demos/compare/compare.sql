@@ -39,7 +39,7 @@ SELECT *, (SELECT both FROM timed WHERE name = 'dbvt') / nullif(both, 0) AS spee
        CASE WHEN exact_pairs = 0 THEN 'no' WHEN 1000 * extra < exact_pairs THEN '<0.1 % of the'
             ELSE fixed(percent(extra, exact_pairs), iif(10 * extra < exact_pairs, 1, 0)) || ' % of the'
             END || ' true pairs' AS extra_share,
-       name || ': left out, filling ' || thousands(objects) || ' ' || noun || ' was not done within '
+       name || ': left out, creating ' || thousands(objects) || ' ' || noun || ' took more than '
        || fixed(left_out_after, 1) || ' s.' AS left_out_sentence
 FROM broadphases LEFT JOIN counted USING (name) LEFT JOIN timed USING (name)
      LEFT JOIN faults USING (name), run
@@ -59,10 +59,10 @@ SELECT thousands(objects) || ' ' || noun || ', ' || frames_done || ' frames'
        || ifnull((SELECT '; ' || title || ' lists extra pairs: ' || thousands(extra) || ' (' || extra_share || ')'
                   FROM results WHERE name = 'dbvt' AND extra > 0), '') || '; '
        || CASE WHEN frames_done = 0 THEN 'pair sets not verified: no frame was run'
-               WHEN exact IS NULL THEN 'none of ours took part'
+               WHEN exact IS NULL THEN 'no hashphase broadphase took part'
                WHEN exact THEN 'pair sets exact in every frame: yes'
                ELSE (SELECT 'pair sets exact in every frame: NO: ''' || name || ''' first '
-                            || iif(kind = 'missing', 'missed', 'reported in excess') || ' the pair '
+                            || iif(kind = 'missing', 'missed', 'falsely listed') || ' the pair '
                             || first || ', ' || second || ' in frame ' || fault_frame || '; box '
                             || first || ' is ' || first_text || ', box ' || second || ' is '
                             || second_text
@@ -72,7 +72,7 @@ FROM run, exactness;
 -- Of charts; and how many frames a point of the trace stands for.
 CREATE VIEW texts AS
 SELECT scene || ', ' || thousands(objects) || ' ' || noun || ', ' || (frames_done - warm_up)
-       || ' frames timed after ' || warm_up || ' to warm up, seed ' || seed || ', one thread.' AS settings,
+       || ' frames timed after ' || warm_up || ' warm-up frames, seed ' || seed || ', one thread.' AS settings,
        removed, (max(frames_done - warm_up, 1) - 1) / 1000 + 1 AS together
 FROM run;
 
@@ -138,22 +138,22 @@ SELECT * FROM (SELECT 'whole step', name, ms(step) FROM broadphases JOIN gains U
                ORDER BY broadphases.rowid);
 
 CREATE TABLE step_sentences AS
-SELECT 1 AS is_of_table, 'A step by Bullet''s profile zones: ms (share), means of ' || thousands(max(steps))
-       || ' frames taken again in worlds of their own, unverified.' AS text
+SELECT 1 AS is_of_table, 'A step by Bullet''s profile zones: ms (share). Means of ' || thousands(max(steps))
+       || ' frames, repeated in separate worlds without checking pairs.' AS text
 FROM gains GROUP BY NULL
 UNION ALL
-SELECT 0, 'Left to gain: setAabb and calculateOverlappingPairs. '
-          || 'Boxes of the shapes take any broadphase the same time.'
+SELECT 0, 'Left to gain: the time of setAabb and calculateOverlappingPairs. '
+          || 'Computing the boxes of the shapes takes the same time with any broadphase.'
 WHERE EXISTS (SELECT 1 FROM gains)
 UNION ALL
 SELECT 0, text FROM (SELECT name || ': broadphase ' || ms(broadphase) || ' of ' || ms(step)
                          || ' ms; left to gain: ' || fixed(left_to_gain, 1) || ' %.' AS text
                   FROM broadphases JOIN gains USING (name) ORDER BY broadphases.rowid)
 UNION ALL
-SELECT 0, 'This Bullet was built without profile zones: what the rest of a step costs cannot be told.'
+SELECT 0, 'This Bullet was built without profile zones: the cost of the other parts of a step is unknown.'
 WHERE EXISTS (SELECT 1 FROM steps) AND NOT EXISTS (SELECT 1 FROM zones)
 UNION ALL
-SELECT 0, 'No time was left to tell what the rest of a step costs.'
+SELECT 0, 'No time was left to measure the other parts of a step.'
 WHERE EXISTS (SELECT 1 FROM timed WHERE step IS NOT NULL) AND NOT EXISTS (SELECT 1 FROM steps);
 
 -- --- On the terminal ------------------------------------------------------------------------------
@@ -176,13 +176,13 @@ VALUES ('Times: median ms a frame of setAabb + calculate. Speed: against dbvt. M
         || 'frames. --verbose prints all columns.');
 
 /* {"rows": "explanation"} */
-SELECT 'Times in ms a frame: median (5th-95th percentile). Speed: against dbvt, by setAabb + calculate.'
+SELECT 'Times in ms a frame: median (5th-95th percentile). Speed: setAabb + calculate, against dbvt.'
 UNION ALL
-SELECT 'Pairs: mean of all frames. Missing, extra and stale pairs: sum of all frames (most in one).'
+SELECT 'Pairs: mean of all frames. Missing, extra and stale pairs: sum of all frames (most in one frame).'
 UNION ALL
 SELECT 'Fill: ms to make the broadphase and create all objects in it.'
        || iif(EXISTS (SELECT 1 FROM broadphases WHERE remove_ms IS NOT NULL),
-              ' Remove: ms to destroy ' || thousands(removed) || ' of them at the end.', '')
+              ' Remove: ms to destroy ' || thousands(removed) || ' objects at the end.', '')
 FROM run;
 
 -- The columns that decide, in 80 columns, or 100 with a whole step.
@@ -283,13 +283,13 @@ FROM frames JOIN broadphases USING (name) WHERE measured ORDER BY broadphases.ro
 
 /* {"each": "SELECT together FROM texts WHERE together > 1",
     "chart": "compare-trace", "title": "Time of the frames, in groups of {together}",
-    "settings": "{settings} setAabb for all objects, then calculateOverlappingPairs. Each point is the median of {together} frames, from the least to the most of them; --csv has each frame.",
+    "settings": "{settings} setAabb for all objects, then calculateOverlappingPairs. Each point is the median of {together} frames, the range is from their minimum to their maximum; --csv has each frame.",
     "mark": "line", "x": "frame", "y": "frame_ms log", "series": "broadphase", "low": "least_ms",
     "high": "most_ms"} */
 SELECT title AS broadphase, min(frame) AS frame,
        median(set_aabb_ms + calculate_ms) AS "frame_ms: setAabb and calculate [ms]",
-       min(set_aabb_ms + calculate_ms) AS "least_ms: least [ms]",
-       max(set_aabb_ms + calculate_ms) AS "most_ms: most [ms]"
+       min(set_aabb_ms + calculate_ms) AS "least_ms: minimum [ms]",
+       max(set_aabb_ms + calculate_ms) AS "most_ms: maximum [ms]"
 FROM frames JOIN broadphases USING (name), run WHERE measured
 GROUP BY name, (frame - warm_up) / :together ORDER BY broadphases.rowid, frame;
 

@@ -58,7 +58,7 @@ TEST(ComparePage, DrawsManyFramesTogether) {
     const std::string html = readFile(path);
     const std::size_t trace = html.find("id=\"compare-trace\"");
     ASSERT_NE(trace, std::string::npos);
-    EXPECT_NE(html.find("median of 3 frames, from the least to the most", trace),
+    EXPECT_NE(html.find("median of 3 frames, the range is from their minimum", trace),
               std::string::npos);
     std::size_t rows = 0;
     const std::size_t end = html.find("</figure>", trace);

@@ -310,8 +310,8 @@ TEST(StepReport, SaysThatBulletHasNoZonesAndShowsNoTable) {
     const Findings findings = compareFindings(measured);
     EXPECT_TRUE(cellsOf(findings).empty());
     EXPECT_EQ(sentencesOf(findings.rows.at("step sentences")),
-              std::vector<std::string>{"This Bullet was built without profile zones: what the rest "
-                                       "of a step costs cannot be told."});
+              std::vector<std::string>{"This Bullet was built without profile zones: the cost of "
+                                       "the other parts of a step is unknown."});
 }
 
 TEST(StepReport, SaysThatNoTimeWasLeft) {
@@ -319,7 +319,7 @@ TEST(StepReport, SaysThatNoTimeWasLeft) {
     const Findings findings = compareFindings(measured);
     EXPECT_TRUE(cellsOf(findings).empty());
     EXPECT_EQ(sentencesOf(findings.rows.at("step sentences")),
-              std::vector<std::string>{"No time was left to tell what the rest of a step costs."});
+              std::vector<std::string>{"No time was left to measure the other parts of a step."});
 }
 
 }  // namespace
