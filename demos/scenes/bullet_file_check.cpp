@@ -53,7 +53,7 @@ public:
         const std::size_t place = position_;
         const auto count = read<std::int32_t>();
         if (count < 0 || count > 32'767) {
-            fail(place, "impossible count in " + what_);
+            fail(place, "invalid count in " + what_);
         }
         return static_cast<std::size_t>(count);
     }
@@ -105,7 +105,7 @@ void checkHeader(std::string_view bytes) {
         fail(bytes.size(), "the file ends inside the header of 12 bytes");
     }
     if (bytes.substr(0, 7) != "BULLETf" && bytes.substr(0, 7) != "BULLETd") {
-        fail(0, "this is no .bullet file: it must begin with BULLETf or BULLETd");
+        fail(0, "this is not a .bullet file: it must begin with BULLETf or BULLETd");
     }
     if (bytes[7] != '_' && bytes[7] != '-') {
         fail(7, "the pointer size must be marked by '_' (32 bits) or '-' (64 bits)");
@@ -183,7 +183,7 @@ Dna readDna(std::string_view bytes, const Chunk& chunk) {
         const auto type = cursor.read<std::int16_t>();
         const auto fields = cursor.read<std::int16_t>();
         if (!isIndex(type, types.size()) || fields < 0) {
-            fail(place, "a structure of the type table (DNA1) names no type");
+            fail(place, "a structure of the type table (DNA1) has no valid type");
         }
         structure = {types[static_cast<std::size_t>(type)],
                      lengths[static_cast<std::size_t>(type)]};
@@ -191,7 +191,8 @@ Dna readDna(std::string_view bytes, const Chunk& chunk) {
             const auto fieldType = cursor.read<std::int16_t>();
             const auto fieldName = cursor.read<std::int16_t>();
             if (!isIndex(fieldType, types.size()) || !isIndex(fieldName, names)) {
-                fail(cursor.position() - 4, "a field of the type table (DNA1) names no type");
+                fail(cursor.position() - 4,
+                     "a field of the type table (DNA1) has no valid type or name");
             }
         }
     }
@@ -234,7 +235,7 @@ void checkChunk(std::string_view bytes, const Chunk& chunk, const Dna& dna) {
     const auto size = static_cast<std::size_t>(chunk.length);
     const bool isText = isPlain(chunk) && chunk.count > 0 && chunk.count == chunk.length;
     if (isText && bytes.substr(chunk.start, size).find('\0') == std::string_view::npos) {
-        fail(chunk.place, "the name in the chunk has no end");
+        fail(chunk.place, "the name in the chunk has no zero byte at its end");
     }
 }
 
@@ -269,10 +270,10 @@ void checkBulletFile(std::string_view bytes) {
     }
     if (std::none_of(chunks.begin(), chunks.end(), isObject)) {
         const std::string others = passedOver(chunks);
-        throw InputError(others.empty() ? "the world in it holds no collision object"
-                                        : "the world in it holds " + others +
-                                              ", which Bullet's importer passes over, and no "
-                                              "collision object besides");
+        throw InputError(others.empty() ? "the world in the file has no collision objects"
+                                        : "the world in the file has no collision objects, "
+                                          "only " +
+                                              others + ", which Bullet's importer ignores");
     }
 }
 

@@ -94,7 +94,7 @@ bool survivesImport(const BulletWorldFile& file, const TellWaiting& tell) {
             throw Interrupted();
         }
         if (tell) {
-            tell("Bullet's importer tries it");
+            tell("Bullet's importer tries the file");
         }
     }
     return ended != child || status == 0;
@@ -106,8 +106,8 @@ BulletWorldFile::BulletWorldFile(const std::filesystem::path& path, const TellWa
     : path_(path.string()), bytes_(readChecked(path)), omissions_(bulletFileOmissions(bytes_)) {
     if (!survivesImport(*this, tell)) {
         throw InputError(path_ +
-                         ": Bullet's importer crashes on the file or does not come to an end: the "
-                         "file is damaged inside its chunks.");
+                         ": Bullet's importer crashes on the file or does not finish: the file is "
+                         "damaged inside its chunks.");
     }
 }
 
@@ -131,8 +131,8 @@ BulletWorldFile::BulletWorldFile(const std::filesystem::path& path, const TellWa
 
 void BulletWorldFile::fill(WorldContents& /*contents*/) const {
     throw InputError(path_ +
-                     ": this program was built without Bullet's world importer (Debian package "
-                     "libbullet-extras-dev), which .bullet files need.");
+                     ": .bullet files need Bullet's world importer (Debian package "
+                     "libbullet-extras-dev), but this program was built without it.");
 }
 
 #endif

@@ -73,7 +73,7 @@ std::string reasonOf(const std::string& sentence, std::string_view word) {
         return "the text is not UTF-8";
     }
     if (isLiteral && isBeyondAscii) {
-        return "this is not UTF-8, or stands outside quotes";
+        return "this is not UTF-8, or is text outside quotes";
     }
     // Behind a value a container need not end.
     if (rest == "; expected '}'" || rest == "; expected ']'") {
@@ -120,8 +120,8 @@ public:
 
     bool key(std::string& name) {
         if (const JsonValue* const first = open_.back()->find(name)) {
-            fail(std::to_string(line_), quotedWord(name) + " stands here again; line " +
-                                            std::to_string(first->line) + " has it already");
+            fail(std::to_string(line_),
+                 quotedWord(name) + " appears twice, first in line " + std::to_string(first->line));
         }
         nextName_ = std::move(name);
         nextLine_ = line_;
@@ -156,8 +156,8 @@ private:
     }
     bool open(JsonValue::Kind kind) {
         if (open_.size() == kMostLevels) {
-            fail(std::to_string(line_), "more than " + std::to_string(kMostLevels) +
-                                            " objects and arrays lie in each other");
+            fail(std::to_string(line_), "objects and arrays are nested more than " +
+                                            std::to_string(kMostLevels) + " levels deep");
         }
         add({.kind = kind});
         // Where it lies stays there until it is closed, for until then nothing is added beside it.
@@ -205,8 +205,8 @@ std::string describe(const JsonValue& value) {
 JsonValue parseJson(std::string_view text, const std::string& name) {
     if (text.size() > kMostBytes) {
         throw InputError(name + " has " + std::to_string(text.size()) +
-                         " bytes, which is more than the " + std::to_string(kMostBytes) +
-                         " that a declaration may have.");
+                         " bytes; a declaration may have at most " + std::to_string(kMostBytes) +
+                         ".");
     }
     TreeBuilder builder(text, name);
     nlohmann::json::sax_parse(builder.begin(), builder.end(), &builder);

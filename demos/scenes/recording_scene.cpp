@@ -76,7 +76,7 @@ void RecordingScene::readHeader() {
     }
     if (frames < 0 || frames > kMostFrames) {
         fail(kCountsOffset + 4, "the frame count is " + std::to_string(frames) +
-                                    ", but must be between 0 and a thousand million");
+                                    ", but must be between 0 and 1,000,000,000");
     }
     recordedObjects_ = static_cast<std::uint64_t>(objects);
     frames_ = frames;
@@ -86,14 +86,14 @@ void RecordingScene::readHeader() {
     const std::uint64_t states = static_cast<std::uint64_t>(frames) + 1;
     const std::uint64_t present = size - kHeaderBytes;
     if (present / frameBytes < states) {
-        fail(size, "the file ends in state " + std::to_string(present / frameBytes) + " of " +
-                       std::to_string(states) + " with " + std::to_string(objects) +
-                       " objects each");
+        fail(size, "the file ends in state " + std::to_string(present / frameBytes) +
+                       ", but must hold " + std::to_string(states) + " states of " +
+                       std::to_string(objects) + " objects each");
     }
     if (present != states * frameBytes) {
         fail(kHeaderBytes + states * frameBytes,
-             "the recording should end here by its counts (" + std::to_string(objects) +
-                 " objects, " + std::to_string(frames) + " frames), but the file goes on");
+             "the recording ends here (" + std::to_string(objects) + " objects, " +
+                 std::to_string(frames) + " frames), but the file has more bytes");
     }
 }
 

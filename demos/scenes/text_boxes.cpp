@@ -31,7 +31,7 @@ public:
 
     [[nodiscard]] float number() {
         if (atEnd()) {
-            fail("the line ends, but six numbers are needed: min x y z max x y z");
+            fail("the line has fewer than six numbers: min x y z max x y z");
         }
         const std::size_t end = std::min(line_.find_first_of(kBlanks, position_), line_.size());
         const std::string_view word = line_.substr(position_, end - position_);
@@ -47,7 +47,7 @@ public:
             fail(quotedWord(word) + " is not a finite number");
         }
         if (std::abs(value) > kLargest) {
-            fail(quotedWord(word) + " is beyond the largest coordinate, 1e30");
+            fail(quotedWord(word) + " is not between -1e30 and 1e30, the limits of coordinates");
         }
         lastStart_ = position_;
         position_ = end;
@@ -82,7 +82,7 @@ Aabb<float> readBox(LineReader& line) {
         }
     }
     if (!line.atEnd()) {
-        line.fail("the line goes on after six numbers");
+        line.fail("the line has more than six numbers");
     }
     return box;
 }
@@ -106,7 +106,7 @@ std::vector<Aabb<float>> parseTextBoxes(std::string_view text, const TellWaiting
         }
     }
     if (boxes.empty()) {
-        throw InputError("no boxes found; each line should be: min x y z max x y z.");
+        throw InputError("no boxes found; each line must be: min x y z max x y z.");
     }
     return boxes;
 }

@@ -42,7 +42,8 @@ TEST(BulletFile, IsRefusedWhenTruncatedAtAnyByte) {
 }
 
 TEST(BulletFile, IsRefusedWithoutACollisionObject) {
-    EXPECT_EQ(bulletFileFault(serialisedWorld(0)), "the world in it holds no collision object");
+    EXPECT_EQ(bulletFileFault(serialisedWorld(0)),
+              "the world in the file has no collision objects");
 }
 
 // Of a whole world with this value in that place.
@@ -55,7 +56,7 @@ std::string faultWith(std::size_t place, Value value) {
 
 TEST(BulletFile, IsRefusedForAHeaderThatIsNone) {
     EXPECT_EQ(faultWith(0, 'X'),
-              "byte 0: this is no .bullet file: it must begin with BULLETf or BULLETd");
+              "byte 0: this is not a .bullet file: it must begin with BULLETf or BULLETd");
     EXPECT_EQ(faultWith(7, '+').rfind("byte 7: ", 0), 0U);
     EXPECT_EQ(faultWith(8, 'V'),
               "byte 8: the file was written on a big-endian machine, which is not supported");
@@ -97,8 +98,8 @@ TEST(BulletFile, OfNothingButMultiBodiesIsRefusedInThoseWords) {
             level.replace(at, 4, "NONE");
         }
         EXPECT_EQ(bulletFileFault(level),
-                  "the world in it holds 1 multi-body, which Bullet's importer passes over, and no "
-                  "collision object besides");
+                  "the world in the file has no collision objects, only 1 multi-body, which "
+                  "Bullet's importer ignores");
     }
 }
 
@@ -109,7 +110,8 @@ TEST(BulletFile, IsRefusedForANameWithoutAnEndAndForPlainNumbersThatDoNotFitThei
         const std::string place = "byte " + std::to_string(chunk);
         std::string endless = level;
         endless.replace(name, 8, "crateful");
-        EXPECT_EQ(bulletFileFault(endless), place + ": the name in the chunk has no end");
+        EXPECT_EQ(bulletFileFault(endless),
+                  place + ": the name in the chunk has no zero byte at its end");
         std::string large = level;
         large.replace(chunk + 20, 4, std::string("\x09\0\0\0", 4));
         EXPECT_EQ(bulletFileFault(large),

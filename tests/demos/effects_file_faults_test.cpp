@@ -275,16 +275,15 @@ TEST(EffectsFileFaults, NameLineAndColumnOfBrokenSyntax) {
 TEST(EffectsFileFaults, NameAFieldThatIsGivenTwice) {
     expectFaults({
         {"{\"scene\": {\"domain\":\n300,\n\"domain\": 300}}",
-         ":3: 'domain' stands here again; line 1 has it already."},
-        {"{\"title\": \"\",\n\"title\": \"\"}",
-         ":2: 'title' stands here again; line 1 has it already."},
+         ":3: 'domain' appears twice, first in line 1."},
+        {"{\"title\": \"\",\n\"title\": \"\"}", ":2: 'title' appears twice, first in line 1."},
     });
 }
 
 TEST(EffectsFileFaults, NameWhatIsNotUtf8) {
     expectFaults({
         {"{\"title\": \"\xff\"}", ":1:12: broken JSON: the text is not UTF-8."},
-        {"\xff\xfe{", ":1:1: broken JSON: this is not UTF-8, or stands outside quotes."},
+        {"\xff\xfe{", ":1:1: broken JSON: this is not UTF-8, or is text outside quotes."},
     });
 }
 
@@ -294,9 +293,9 @@ TEST(EffectsFileFaults, NameWhatIsNoSceneAtAll) {
     expectFaults({
         {"", empty},
         {" \t\r\n", empty},
-        {"\n" + std::string(60'000, '['), ":2: more than 8 objects and arrays lie in each other."},
-        {std::string(70'000, '1'),
-         " has 70000 bytes, which is more than the 65536 that a declaration may have."},
+        {"\n" + std::string(60'000, '['),
+         ":2: objects and arrays are nested more than 8 levels deep."},
+        {std::string(70'000, '1'), " has 70000 bytes; a declaration may have at most 65536."},
         {"{\"" + std::string(50'000, 'x') + "\": 1}",
          ":1: " + std::string(40, 'x') +
              "...: there is no such field; there are $schema, title, scene, effects, grid."},

@@ -98,8 +98,8 @@ TEST(Recording, IsRefusedWhenTruncatedAtAnyByte) {
 
 TEST(Recording, IsRefusedWhenItGoesOnBeyondItsCounts) {
     EXPECT_EQ(faultIn(recording(2, 1) + "x"),
-              "byte 432: the recording should end here by its counts (2 objects, 1 frames), but "
-              "the file goes on.");
+              "byte 432: the recording ends here (2 objects, 1 frames), but the file has more "
+              "bytes.");
 }
 
 TEST(Recording, IsRefusedForHostileCountsWithoutAllocatingThem) {
@@ -107,7 +107,7 @@ TEST(Recording, IsRefusedForHostileCountsWithoutAllocatingThem) {
     for (const std::int32_t count : {kMost, 0, -1, std::numeric_limits<std::int32_t>::min()}) {
         std::string bytes = recording(2, 1);
         overwrite(bytes, 256, count);
-        EXPECT_NE(faultIn(bytes).find(count > 0 ? "byte 432: the file ends in state 0 of 2"
+        EXPECT_NE(faultIn(bytes).find(count > 0 ? "byte 432: the file ends in state 0, but"
                                                 : "byte 256: the object count is"),
                   std::string::npos);
     }
@@ -119,7 +119,8 @@ TEST(Recording, IsRefusedForHostileCountsWithoutAllocatingThem) {
     std::string bytes = recording(2, 1);
     overwrite(bytes, 256, kMost);
     overwrite(bytes, 260, std::int32_t{1'000'000'000});
-    EXPECT_NE(faultIn(bytes).find("of 1000000001 with 2147483647 objects each"), std::string::npos);
+    EXPECT_NE(faultIn(bytes).find("must hold 1000000001 states of 2147483647 objects each"),
+              std::string::npos);
 }
 
 TEST(Recording, IsRefusedForNanAndInfinityAndNamesTheByte) {

@@ -24,17 +24,18 @@ TEST(TextBoxes, SkipsEmptyLinesAndCommentsAndAcceptsTabsAndCarriageReturns) {
 }
 
 TEST(TextBoxes, NamesLineAndColumnOfTheFirstFault) {
-    const std::string none = "no boxes found; each line should be: min x y z max x y z.";
+    const std::string none = "no boxes found; each line must be: min x y z max x y z.";
     const std::pair<std::string, std::string> faults[] = {
         {"0 0 0 1 1 1\n0 0 zero 1 1 1\n", "line 2, column 5: expected a number, found 'zero'."},
         {"0 0 0 1 1 1x\n", "line 1, column 11: expected a number, found '1x'."},
         {"0 0 0 1 1\n",
-         "line 1, column 10: the line ends, but six numbers are needed: min x y z max x y z."},
-        {"0 0 0 1 1 1 7\n", "line 1, column 13: the line goes on after six numbers."},
+         "line 1, column 10: the line has fewer than six numbers: min x y z max x y z."},
+        {"0 0 0 1 1 1 7\n", "line 1, column 13: the line has more than six numbers."},
         {"0 0 nan 1 1 1", "line 1, column 5: 'nan' is not a finite number."},
         {"0 0 0 1 inf 1", "line 1, column 9: 'inf' is not a finite number."},
         {"0 0 0 1 1 1e60", "line 1, column 11: '1e60' does not fit a single-precision number."},
-        {"0 0 0 1 1 1e35", "line 1, column 11: '1e35' is beyond the largest coordinate, 1e30."},
+        {"0 0 0 1 1 1e35",
+         "line 1, column 11: '1e35' is not between -1e30 and 1e30, the limits of coordinates."},
         {"0 0 0 1 1 1\n0 0 0 1 -1 1\n",
          "line 2, column 9: the box is inverted: its max y is below its min."},
         {"", none},
