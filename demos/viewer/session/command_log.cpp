@@ -30,7 +30,7 @@ std::uint64_t fromHexadecimal(const std::string& text) {
     const char* const end = text.data() + text.size();
     if (!text.starts_with("0x") ||
         std::from_chars(text.data() + 2, end, number, 16) != std::from_chars_result{end, {}}) {
-        throw InputError("'" + text + "' is not a hash: 0x and up to 16 digits");
+        throw InputError("'" + text + "' is not a hash: 0x and up to 16 hexadecimal digits");
     }
     return number;
 }
@@ -39,7 +39,7 @@ std::uint64_t fromHexadecimal(const std::string& text) {
 std::uint64_t countIn(const Json& json, const char* name, std::uint64_t most) {
     const Json& number = json.at(name);
     if (!number.is_number_unsigned() || number.get<std::uint64_t>() > most) {
-        throw InputError("'" + std::string(name) + "' is a whole number from 0 to " +
+        throw InputError("'" + std::string(name) + "' must be a whole number from 0 to " +
                          std::to_string(most) + ", not " + number.dump());
     }
     return number.get<std::uint64_t>();
@@ -50,8 +50,8 @@ void requireVersion(const Json& json) {
         throw InputError("it is not a recording of hashphase wander");
     }
     if (const Json& version = json.at("version"); version != kVersion) {
-        throw InputError("it is of version " + version.dump() +
-                         ", and this program replays version " + std::to_string(kVersion) +
+        throw InputError("it has version " + version.dump() +
+                         ", but this program replays only version " + std::to_string(kVersion) +
                          ", which also compares agents' colours: record it again");
     }
 }
@@ -162,10 +162,11 @@ CommandLog CommandLog::parse(std::string_view text, const std::string& name) {
         };
         if (!std::is_sorted(log.commands.begin(), log.commands.end(), comesLater) ||
             log.hashes.size() != log.frames / kHashEvery) {
-            throw InputError("its frames are out of order, or hashes are missing");
+            throw InputError(
+                "its commands are not in the order of their frames, or hashes are missing");
         }
         if (log.frames > 0 && log.frames % kHashEvery == 0 && log.hashes.back() != log.hash) {
-            throw InputError("its last hash is not the one of all frames");
+            throw InputError("its last hash differs from its hash of all frames");
         }
         return log;
     } catch (const Json::exception& error) {

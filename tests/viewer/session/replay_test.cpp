@@ -232,16 +232,16 @@ TEST(CommandLog, RefusesWhatNoSessionHasRecorded) {
     };
     std::vector<Case> cases{
         {"\"version\": 2", "\"version\": 1",
-         "it is of version 1, and this program replays version 2, which also compares agents' "
+         "it has version 1, but this program replays only version 2, which also compares agents' "
          "colours: record it again."},
         {"\"objects\": 10", "\"objects\": -5",
-         "'objects' is a whole number from 0 to 1000000, not -5."},
+         "'objects' must be a whole number from 0 to 1000000, not -5."},
         {"\"seed\": 5", "\"seed\": 1099511627776",
-         "'seed' is a whole number from 0 to 4294967295, not 1099511627776."},
+         "'seed' must be a whole number from 0 to 4294967295, not 1099511627776."},
         {"\"hash\": \"0x", "\"hash\": \"0x1\", \"old\": \"0x",
-         "its last hash is not the one of all frames."},
+         "its last hash differs from its hash of all frames."},
         {"\"frames\": 60", "\"frames\": 600",
-         "its frames are out of order, or hashes are missing."}};
+         "its commands are not in the order of their frames, or hashes are missing."}};
     for (const std::string line :  // that write files, or are the onlooker's
          {"save elsewhere.json", "capture elsewhere.aabbs 5", "screenshot elsewhere.png", "quit"}) {
         cases.push_back({"\"command\": \"size 1280 800\"", "\"command\": \"" + line + "\"",
