@@ -122,7 +122,7 @@ SELECT (SELECT group_concat(ended, ' or ') FROM (SELECT DISTINCT ended FROM ends
 SELECT program || ': ' || iif(dbvts > 0, thousands(dbvts) || ' btDbvtBroadphase' || iif(dbvts > 1, 's, ', ', '), '')
        || iif(axisSweeps > 0, thousands(axisSweeps) || ' axis sweep' || iif(axisSweeps > 1, 's, ', ', '), '')
        || iif(derivedSweeps > 0, thousands(derivedSweeps)
-              || ' of classes derived from an axis sweep, not taken over, ', '')
+              || ' of a class derived from an axis sweep (not replaced), ', '')
        || precision || ' precision' || ifnull(', ' || bullet, ''),
        NOT is_of_ours AND (SELECT min(hasBroadphase) FROM runs)
        AND CASE runs.broadphase
@@ -133,19 +133,19 @@ FROM trial, runs, (SELECT is_of_ours FROM endings) WHERE run = 1;
 -- --- For people ------------------------------------------------------------------------------------
 
 CREATE TABLE notes AS
-SELECT thousands(number) || ' calculations of pairs were those of broadphases that are not taken over.' AS note
+SELECT thousands(number) || ' calculations of pairs were in broadphases that hashphase does not replace.' AS note
 FROM (SELECT max(foreignCalculations) AS number FROM runs) WHERE number > 0
 UNION ALL
 SELECT thousands(number) || ' further process' || iif(number > 1, 'es', '')
-       || ' had a broadphase or went on with a copy, and ' || iif(number > 1, 'are', 'is')
+       || ' made a broadphase or inherited a copy, and ' || iif(number > 1, 'are', 'is')
        || ' not in these figures.'
 FROM (SELECT max(otherProcesses) AS number FROM runs) WHERE number > 0
 UNION ALL
-SELECT 'There is room for ' || thousands(room) || ' steps; ' || thousands(number)
-       || ' more are not in these figures.'
+SELECT 'At most ' || thousands(room) || ' steps are recorded; ' || thousands(number)
+       || ' more steps are not in these figures.'
 FROM trial, (SELECT max(droppedSteps) AS number FROM runs) WHERE number > 0
 UNION ALL
-SELECT 'Run ' || run || ' has made no broadphase, and ' || ended || ': it was the last.'
+SELECT 'Run ' || run || ' made no broadphase and ' || ended || '; no further run followed.'
 FROM runs WHERE run = (SELECT max(run) FROM runs) AND NOT hasBroadphase;
 
 CREATE TABLE figures AS
@@ -154,9 +154,9 @@ FROM bullet AS b, ours AS h
 UNION ALL
 SELECT 'ms', 'calculateOverlappingPairs [ms]', b.calculate, h.calculate FROM bullet AS b, ours AS h
 UNION ALL
-SELECT 'ms', 'rays, with what they hit [ms]', b.rays, h.rays FROM bullet AS b, ours AS h
+SELECT 'ms', 'rays and their callbacks [ms]', b.rays, h.rays FROM bullet AS b, ours AS h
 UNION ALL
-SELECT 'ms', 'these together [ms]', b.together, h.together FROM bullet AS b, ours AS h
+SELECT 'ms', 'sum of the above [ms]', b.together, h.together FROM bullet AS b, ours AS h
 UNION ALL
 SELECT 'ms', 'narrow phase [ms]', ifnull(b.narrow_phase, 0), ifnull(h.narrow_phase, 0)
 FROM bullet AS b, ours AS h WHERE coalesce(b.narrow_phase, h.narrow_phase) IS NOT NULL
@@ -168,14 +168,14 @@ FROM bullet AS b, ours AS h WHERE b.step + h.step IS NOT NULL
 UNION ALL
 SELECT 'count', 'pairs', b.pairs, h.pairs FROM bullet AS b, ours AS h
 UNION ALL
-SELECT 'count', 'of which overlap', b.overlapping, h.overlapping FROM bullet AS b, ours AS h
+SELECT 'count', 'overlapping pairs', b.overlapping, h.overlapping FROM bullet AS b, ours AS h
 UNION ALL
 SELECT 'count', 'rays', b.ray_count, h.ray_count FROM bullet AS b, ours AS h
 UNION ALL
 SELECT 'count', 'rays between steps', b.ray_between_count, h.ray_between_count
 FROM bullet AS b, ours AS h WHERE b.ray_between_count + h.ray_between_count > 0
 UNION ALL
-SELECT 'ms', 'these, with what they hit [ms]', b.rays_between, h.rays_between
+SELECT 'ms', 'rays between steps, time [ms]', b.rays_between, h.rays_between
 FROM bullet AS b, ours AS h WHERE b.ray_between_count + h.ray_between_count > 0
 UNION ALL
 SELECT 'count', 'objects at most', b.objects, h.objects FROM bullet AS b, ours AS h
@@ -200,7 +200,7 @@ FROM (SELECT *, 1.0 * bullet / nullif(ours, 0) AS ratio FROM figures);
 CREATE TABLE changes AS
 SELECT iif(ms(abs(bullet - ours)) <> ms(0),
            ms(abs(bullet - ours)) || iif(ours > bullet, ' ms more ', ' ms less ') || place,
-           'as long ' || place || iif(saved >= 1, '', NULL))
+           'the same time ' || place || iif(saved >= 1, '', NULL))
        || iif(saved >= 1, visits, '') AS change
 FROM (SELECT 'in the broadphase' AS place, b.together AS bullet, h.together AS ours, 0 AS saved, '' AS visits
       FROM bullet AS b, ours AS h
@@ -219,26 +219,26 @@ DELETE FROM changes WHERE change IS NULL;
 
 /* {"rows": "comparison"} */
 SELECT 'Times are the calling thread''s processor time'
-       || iif(on_threads, '; of the narrow phase, rays and whole steps, in which several threads work, they '
-                          || 'are those on the wall.', '.')
+       || iif(on_threads, ', except for the narrow phase, rays and whole steps. Several threads work in these: '
+                          || 'their times are wall-clock times.', '.')
 FROM ours, threads
 UNION ALL
 SELECT note FROM notes
 UNION ALL
-SELECT 'Compared are the first steps, as many as both runs have: with Bullet''s broadphase there were '
+SELECT 'Only the first steps are compared, as many as both runs have: with Bullet''s broadphase there were '
        || thousands(bullet) || ', with hashphase ' || thousands(ours) || '.'
 FROM (SELECT sum(iif(broadphase = 'bullet', turns.steps, 0)) AS bullet,
              sum(iif(broadphase = 'hashphase', turns.steps, 0)) AS ours, max(is_cut) AS is_cut
       FROM turns JOIN common USING (turn)), (SELECT 1 FROM ours) WHERE is_cut
 UNION ALL
-SELECT 'Times are without the slowest twentieth of the steps, which took ' || b.slow_text
+SELECT 'Times exclude the slowest 5 % of the steps. These steps took ' || b.slow_text
        || ' of all time with Bullet''s and ' || h.slow_text || ' with hashphase: ' || ms(b.slow_step) || ' and '
        || ms(h.slow_step) || ' ms a step.'
 FROM bullet AS b, ours AS h WHERE max(b.slow_share, h.slow_share) > 0.2
 UNION ALL
 SELECT 'These are few steps: take the figures as a hint.' FROM ours WHERE steps < 60
 UNION ALL
-SELECT 'The numbers of objects differ: the program does not do the same each time.'
+SELECT 'The numbers of objects differ: the program does something else in each run.'
 FROM bullet AS b, ours AS h WHERE b.objects <> h.objects
 UNION ALL
 SELECT ifnull('With hashphase a step takes ' || ms(h.step) || ' ms instead of ' || ms(b.step) || ' ('
@@ -247,19 +247,19 @@ SELECT ifnull('With hashphase a step takes ' || ms(h.step) || ' ms instead of ' 
                                                   ELSE ', and ' END || change, '')
                          FROM (SELECT change, row_number() OVER (ORDER BY rowid) AS place,
                                       count(*) OVER () AS parts FROM changes)), '') || '.',
-              'The program has made no steps: pairs were calculated by hand.')
+              'The program made no steps: it calculated pairs itself.')
 FROM bullet AS b, ours AS h
 UNION ALL
 SELECT ifnull(overload, 'Other programs were busy, or the program waited for something')
        || CASE WHEN min(b.share, h.share) >= 0.9
-                   THEN iif(on_threads, ', which lengthens the times on the wall.',
-                            ', but the times above leave waiting out.')
+                   THEN iif(on_threads, ', which lengthens the wall-clock times.',
+                            ', but the times above exclude waiting.')
                ELSE ': the calling thread ran for ' || b.share_text || ' of the time with Bullet''s, and for '
                     || h.share_text || ' with hashphase. '
                     || CASE WHEN on_threads THEN 'Trust the times of updateAabbs and calculateOverlappingPairs, '
-                                                 || 'and not those on the wall.'
+                                                 || 'not the wall-clock times.'
                             WHEN b.step + h.step IS NULL THEN 'Trust the times above.'
-                            ELSE 'Trust the times above, and not those by the clock on the wall: '
+                            ELSE 'Trust the times above, not the wall-clock times: '
                                  || ms(b.step_on_wall) || ' and ' || ms(h.step_on_wall) || ' ms a step ('
                                  || ifnull(fixed(wall_ratio, iif(wall_ratio < 10, 2, 1)) || 'x', '-') || ').'
                             END END
@@ -268,19 +268,19 @@ FROM bullet AS b, ours AS h, threads, trial,
 WHERE overload IS NOT NULL OR min(b.share, h.share) < 0.9
 UNION ALL
 -- Of a trial that was ended in its first run, or whose program does something else each time.
-SELECT ifnull((SELECT 'There was no run with hashphase. With Bullet''s broadphase, ' || ms(together)
-                      || ' ms of a step' || ifnull(' of ' || ms(step) || ' ms', '')
-                      || ' were updateAabbs, calculateOverlappingPairs and rays; ' || thousands(steps)
-                      || ' steps, ' || thousands(objects) || ' objects at most, ' || pairs_text || ' pairs.'
+SELECT ifnull((SELECT 'There was no run with hashphase. With Bullet''s broadphase, updateAabbs, '
+                      || 'calculateOverlappingPairs and rays took ' || ms(together) || ' ms'
+                      || ifnull(' of the ' || ms(step) || ' ms', '') || ' of a step; ' || thousands(steps)
+                      || ' steps, at most ' || thousands(objects) || ' objects, ' || pairs_text || ' pairs.'
                FROM bullet),
-              'No steps were compared: the runs have none in common in which pairs were calculated.')
+              'No steps were compared: the runs have no common steps in which pairs were calculated.')
 FROM endings WHERE bullet IS NOT NULL AND NOT EXISTS (SELECT 1 FROM ours)
 UNION ALL
 -- What it ended with matters more than what it took.
 SELECT CASE WHEN is_of_ours OR (any_failure AND bullet IS NOT ours)
                 THEN 'The program ' || bullet || ' with Bullet''s broadphase'
                      || ifnull(', and ' || ours || ' with hashphase', '') || '.'
-            ELSE 'The program ' || failure || ', whichever the broadphase.' END
+            ELSE 'The program ' || failure || ' with either broadphase.' END
 FROM endings WHERE bullet IS NOT NULL AND (is_of_ours OR any_failure);
 
 -- --- Of pairs that were verified -------------------------------------------------------------------
@@ -297,17 +297,17 @@ FROM verification WHERE calculations > 0;
 
 /* {"rows": "verification"} */
 SELECT thousands(number) || ' times a pair was ' || what
-FROM (SELECT calculations, waitForAMove AS number, 'refused that the filter would take now: the filter was '
-             || 'changed, and nothing has moved since. See refilter().' AS what FROM verification
+FROM (SELECT calculations, waitForAMove AS number, 'refused that the filter would now accept: the filter '
+             || 'was changed, and the objects have not moved since. See refilter().' AS what FROM verification
       UNION ALL
-      SELECT calculations, removedByProgram, 'missing that the program had taken out of its own cache itself: '
-             || 'with hashphase it comes back when the two meet again.' FROM verification
+      SELECT calculations, removedByProgram, 'missing because the program itself removed it from its pair cache: '
+             || 'hashphase lists it again when its objects meet again.' FROM verification
       UNION ALL
-      SELECT calculations, notJudged, 'not judged, as a callback had moved one of the two while pairs were '
-             || 'calculated: its turn is in the next calculation.' FROM verification)
+      SELECT calculations, notJudged, 'not checked because a callback moved one of its objects while pairs '
+             || 'were calculated: the next calculation checks it.' FROM verification)
 WHERE calculations > 0 AND number > 0
 UNION ALL
-SELECT 'The first fault, ' || firstFault || '.' FROM verification WHERE calculations > 0
+SELECT 'The first fault: ' || firstFault || '.' FROM verification WHERE calculations > 0
 UNION ALL
 SELECT thousands(calculations) || ' calculations of pairs verified: the pairs of hashphase are '
        || iif(missing + extra = 0, 'exact in each', 'NOT EXACT') || '.'
