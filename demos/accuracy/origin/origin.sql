@@ -161,11 +161,11 @@ WITH begins AS (
            thousands(min(offset) FILTER (WHERE extra_percent > 1)) AS extra,
            thousands(min(offset) FILTER (WHERE missed_hits > 0)) AS missed_hits
     FROM did GROUP BY number)
-SELECT method || ': misses pairs ' || ifnull('from ' || begins.missed || ' m on', 'at no distance')
-       || ', more than 1 % false pairs '
-       || ifnull('from ' || begins.extra || ' m on', 'at no distance')
-       || ', misses ray hits '
-       || ifnull('from ' || begins.missed_hits || ' m on', 'at no distance')
+SELECT method || ': missed pairs: ' || ifnull('from ' || begins.missed || ' m on', 'never')
+       || ', more than 1 % false pairs: '
+       || ifnull('from ' || begins.extra || ' m on', 'never')
+       || ', missed ray hits: '
+       || ifnull('from ' || begins.missed_hits || ' m on', 'never')
        || '. At ' || distance || ': ' || fixed(missed_percent, 1) || ' % of pairs missed, '
        || fixed(extra_percent, 1) || ' % false; a frame takes ' || fixed(times, 2)
        || ' times as long as float at the origin (this method at the origin: ' || fixed(at_origin, 2) || ' times).'
@@ -174,8 +174,8 @@ FROM did JOIN far USING (point) JOIN begins USING (number)
 ORDER BY number;
 
 /* {"conclusions": "of balls"} */
-SELECT method || ': balls rest with an error above 1 mm '
-       || ifnull('from ' || thousands(first) || ' m on', 'at no distance')
+SELECT method || ': position errors of balls at rest above 1 mm: '
+       || ifnull('from ' || thousands(first) || ' m on', 'never')
        || '; ' || number(1000 * position_error) || ' mm at ' || distance || ', '
        || number(1000 * at_origin) || ' mm at the origin.'
 FROM rested JOIN far USING (point)

@@ -253,8 +253,7 @@ Findings findOrigin(const OriginPlan& plan, std::uint64_t seed,
 Experiment originExperiment() {
     return {"P6",
             "Distance from the origin",
-            "What is missed and what is false far from the origin, and what does it cost to be "
-            "right there?",
+            "What is missed or false far from the origin, and what do exact results cost there?",
             4,
             40,
             [](const Effort& effort, const TellProgress& tell) {

@@ -124,7 +124,7 @@ Findings measureCellSizes(std::span<const CellCase> cases, const CellMethods& me
 Experiment cellSizeExperiment() {
     return {"P2",
             "Cell size",
-            "What do cells cost that are too small or too large, and what do they miss?",
+            "What do too small or too large cells cost, and what do they miss?",
             4,
             100,
             [](const Effort& effort, const TellProgress& tell) {

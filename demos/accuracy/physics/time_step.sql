@@ -114,8 +114,8 @@ SELECT task_title || ', one simulated second', method || ', steps of ' || settin
 FROM did WHERE measure = 0;
 
 /* {"conclusions": "our time against Bullet's"} */
-SELECT bullet.method || ' takes '
-       || fixed(median(bullet.ms / us.ms), 2) || ' times as long as ' || us.method || ' in the median ('
+SELECT 'In the median, ' || bullet.method || ' takes '
+       || fixed(median(bullet.ms / us.ms), 2) || ' times as long as ' || us.method || ' ('
        || fixed(min(bullet.ms / us.ms), 2) || ' to '
        || fixed(max(bullet.ms / us.ms), 2) || ').'
 FROM did AS us JOIN did AS bullet USING (point, measure, canonical)

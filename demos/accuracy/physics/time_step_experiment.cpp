@@ -170,7 +170,7 @@ Findings measureTimeSteps(std::span<const PhysicsTask> tasks,
 Experiment timeStepExperiment() {
     return {"P7",
             "Time step, substeps, iterations",
-            "What do smaller steps and more iterations buy, and does the broadphase change it?",
+            "Do smaller steps and more iterations reduce errors, and does the broadphase matter?",
             5,
             60,
             [](const Effort& effort, const TellProgress& tell) {

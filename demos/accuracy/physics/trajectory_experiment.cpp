@@ -78,7 +78,7 @@ Findings compareTrajectories(std::span<const PhysicsBroadphase> broadphases,
 Experiment trajectoryExperiment() {
     return {"P8",
             "Does the grid change physics?",
-            "Do bodies move to the last bit as under brute force, whatever the broadphase?",
+            "Which broadphases give motion that is bit-identical to brute force?",
             4,
             60,
             [](const Effort& effort, const TellProgress& tell) {

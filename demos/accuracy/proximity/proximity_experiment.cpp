@@ -274,7 +274,7 @@ Findings measureProximity(const ProximityPlan& plan, std::span<const NeighbourMe
 Experiment proximityExperiment() {
     return {"P3",
             "Proximity for AI",
-            "How many decisions do rough neighbours get wrong, and how much time do they save?",
+            "How many decisions are wrong with approximate neighbours, and how much time is saved?",
             5,
             100,
             [](const Effort& effort, const TellProgress& tell) {

@@ -197,7 +197,7 @@ Findings findSweeps(const SweepPlan& plan, std::uint64_t seed, std::span<const S
 Experiment sweepExperiment() {
     return {"P1",
             "Fast objects",
-            "What do fast objects fly through unseen, and what does it cost to detect all of it?",
+            "How many contacts of fast objects are missed, and what does it cost to detect all?",
             4,
             100,
             [](const Effort& effort, const TellProgress& tell) {
