@@ -162,7 +162,7 @@ WHERE EXISTS (SELECT 1 FROM timed WHERE step IS NOT NULL) AND NOT EXISTS (SELECT
 SELECT scene || ': ' || description FROM run
 UNION ALL
 SELECT thousands(objects) || ' ' || noun || ', ' || frames_done || ' frames (the first ' || warm_up
-       || ' verified, not timed), seed ' || seed FROM run;
+       || ' are verified, but not timed), seed ' || seed FROM run;
 
 /* {"rows": "stopped"} */
 SELECT stopped || ' after ' || frames_done || ' of ' || frames_asked || ' frames.'

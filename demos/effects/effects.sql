@@ -107,9 +107,10 @@ ORDER BY compared.rowid;
 -- Next to the prices: why a time is below zero.
 CREATE TABLE below_zero AS
 SELECT effect || ' ' || which || ', ' || ms(ms) || ' ms: '
-       || iif(high > 0, 'within the variation between frames (' || ms(low) || ' to ' || ms(high)
+       || iif(high > 0, 'less than the variation between frames (' || ms(low) || ' to ' || ms(high)
                         || ' ms), so too small to measure.',
-              'a frame takes less time with the effect: the effect saves other effects more time than it takes.') AS sentence
+              'a frame takes less time with the effect, because the effect saves other effects more time '
+              || 'than it takes.') AS sentence
 FROM (SELECT * FROM differences WHERE ms < 0 ORDER BY price, which);
 
 CREATE TABLE checks AS

@@ -216,9 +216,9 @@ TEST(EffectPrices, ExplainATimeBelowZeroBesideIt) {
     const std::vector<std::string>& onPage = found.sections.at(0).sentences;
     const std::vector<std::string> onTerminal = sentencesOf(found.rows.at("below"));
     for (const char* sentence :
-         {"sweep within all, -1.00 ms: a frame takes less time with the effect: the effect saves "
-          "other effects more time than it takes.",
-          "response within all, -0.250 ms: within the variation between frames (-0.250 to 0.500 "
+         {"sweep within all, -1.00 ms: a frame takes less time with the effect, because the effect "
+          "saves other effects more time than it takes.",
+          "response within all, -0.250 ms: less than the variation between frames (-0.250 to 0.500 "
           "ms), so too small to measure."}) {
         EXPECT_EQ(std::ranges::count(onPage, sentence), 1) << sentence;
         EXPECT_EQ(std::ranges::count(onTerminal, sentence), 1) << sentence;
