@@ -156,7 +156,7 @@ SELECT 'ms', 'calculateOverlappingPairs [ms]', b.calculate, h.calculate FROM bul
 UNION ALL
 SELECT 'ms', 'rays and their callbacks [ms]', b.rays, h.rays FROM bullet AS b, ours AS h
 UNION ALL
-SELECT 'ms', 'sum of the above [ms]', b.together, h.together FROM bullet AS b, ours AS h
+SELECT 'ms', 'whole broadphase [ms]', b.together, h.together FROM bullet AS b, ours AS h
 UNION ALL
 SELECT 'ms', 'narrow phase [ms]', ifnull(b.narrow_phase, 0), ifnull(h.narrow_phase, 0)
 FROM bullet AS b, ours AS h WHERE coalesce(b.narrow_phase, h.narrow_phase) IS NOT NULL
