@@ -8,10 +8,8 @@
 #include <sstream>
 #include <vector>
 
-#ifdef __linux__
 #include <sys/wait.h>
 #include <unistd.h>
-#endif
 
 namespace hashphase::demos {
 namespace {
@@ -43,7 +41,6 @@ TEST(OtherPrograms, AreNotBusyWhileTheProcessorIdlesOrWaitsForDevices) {
     }
 }
 
-#ifdef __linux__
 TEST(OtherPrograms, AreNotThisProgramNorItsChildren) {
     const std::optional<ProcessorTimes> begin = processorTimes();
     if (!begin) {
@@ -66,7 +63,6 @@ TEST(OtherPrograms, AreNotThisProgramNorItsChildren) {
     ASSERT_EQ(waitpid(child, nullptr, 0), child);
     EXPECT_GE(processorTimes()->own - alone, 0.049);
 }
-#endif
 
 }  // namespace
 }  // namespace hashphase::demos
