@@ -6,7 +6,7 @@
 //     const Aabb<float> crate = boxAround<float>({0, 1, 0}, {0.5F, 1, 0.5F});
 //     if (overlaps(crate, boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}))) { ... }
 //
-// Units    metres, or any other unit of length used throughout
+// Units    metres, or any other unit of length; use one unit everywhere
 // Closed   Boxes contain their faces, as in Bullet: touching boxes overlap.
 // NaN      A box with a NaN coordinate overlaps nothing.
 // Cost     O(1), no allocation
@@ -33,7 +33,7 @@ template <class Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 
 /// A box from min() to max(), both inclusive. It may be infinite, or inverted (min > max) like Aabb<Scalar>(). The
-/// predicates below apply exactly to such boxes too.
+/// tests below are exact for such boxes too.
 template <class Scalar>
 using Aabb = Eigen::AlignedBox<Scalar, 3>;
 
@@ -45,15 +45,15 @@ template <class Scalar>
     return {min, max};
 }
 
-/// Returns the box from `center` - `halfExtents` to `center` + `halfExtents` [m], rounded. Negative half extents make
-/// an inverted box.
+/// Returns the box from `center` - `halfExtents` to `center` + `halfExtents` [m]. The corners are rounded. Negative
+/// half extents make an inverted box.
 template <class Scalar>
 [[nodiscard]] inline Aabb<Scalar> boxAround(
     const Vector3<Scalar>& center, const Vector3<std::type_identity_t<Scalar>>& halfExtents) {
     return {center - halfExtents, center + halfExtents};
 }
 
-/// Returns the cube around a ball: `radius` [m] is the half extent on every axis.
+/// Returns the cube around a ball. `radius` [m] is the half extent on every axis.
 template <class Scalar>
 [[nodiscard]] inline Aabb<Scalar> boxAround(const Vector3<Scalar>& center,
                                             std::type_identity_t<Scalar> radius) {
@@ -92,8 +92,8 @@ template <std::floating_point Scalar>
     return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
-/// True when all six coordinates have the same bits. The code compares single numbers, because wider reads would wait
-/// for recent writes.
+/// True when all six coordinates have the same bits. The code compares single numbers: a SIMD read of numbers just
+/// written would stall.
 template <class Scalar>
 [[nodiscard]] inline bool isSameBits(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
     const Scalar* aMin = a.min().data();
@@ -107,7 +107,7 @@ template <class Scalar>
 
 namespace detail {
 
-/// Like Eigen's allFinite() and hasNaN(), but also correct with -ffast-math.
+/// Like Eigen's allFinite() and hasNaN(), but these functions are also correct with -ffast-math.
 template <class Scalar>
 [[nodiscard]] inline bool areFinite(const Vector3<Scalar>& point) noexcept {
     return isFinite(point[0]) && isFinite(point[1]) && isFinite(point[2]);

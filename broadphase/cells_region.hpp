@@ -12,13 +12,14 @@
 namespace hashphase {
 
 /// Finds every proxy whose box touches a cell that the ball's bounding box touches. This estimates the proxies in the
-/// ball, without distances. Key: 0.
+/// ball, and computes no distances. Key: 0.
 ///
 ///     CollectCount count;
 ///     grid.visit(CellsRegion<float>(center, 20, grid.cellSize()), count);
 ///
-/// Finds every proxy that a PositionRegion or SphereRegion of the ball finds. Apart from rounding, other proxies
-/// found are nearer to the centre than radius + cellSize on each axis: at most sqrt(3) * (radius + cellSize) away.
+/// The result includes all proxies that a PositionRegion or SphereRegion of the ball finds. Its other proxies, apart
+/// from rounding, are nearer to the centre than radius + cellSize on each axis: at most sqrt(3) * (radius + cellSize)
+/// away.
 ///
 /// Source: Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005,
 /// "AI proximity decisions". (The paper's loop omits the last cells.)
@@ -36,7 +37,7 @@ public:
             Scalar& high = bounds_.max()[axis];
             const Scalar lowBorder = std::floor(low / cellSize) * cellSize;
             const Scalar highBorder = (std::floor(high / cellSize) + 1) * cellSize;
-            // Rounds outward. A NaN border changes nothing.
+            // Borders only enlarge the box. A NaN border changes nothing.
             low = lowBorder < low ? lowBorder : low;
             high = highBorder > high ? highBorder : high;
         }

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Collectors decide what a query keeps. A collector has two members:
+// Collectors receive the proxies that a query finds, and decide which to keep. A collector has two members:
 //
-//   add(id, key)   receives a proxy in the region, each proxy at most once
+//   add(id, key)   receives each proxy in the region, at most once
 //   limit()        returns the largest key still wanted; a negative limit ends the query
 //
 //     std::vector<ProxyId> found;
 //     CollectAll all(found);
 //     grid.visit(BoxRegion<float>{box}, all);  // the answer is in `found`
 //
-// Use      Pass a variable: after the query, it holds the answer. It serves one query at a time, on one thread.
+// Use      Pass a variable, which holds the answer after the query. Use a collector in one query at a time, on one
+//          thread.
 // Keys     The region defines the keys (regions.hpp): 0, a squared distance [m^2], or a fraction of a path.
 // Own      Any class with these members is a collector. add() receives keys of the grid's Scalar; limit() may return
 //          float or double. For collectors that change the grid, see Callbacks in grid.hpp.
-// Filters  CollectIf (proxy_filter.hpp) removes proxies before another collector receives them.
+// Filters  CollectIf (proxy_filter.hpp) passes only proxies that a filter accepts to another collector.
 
 #include <broadphase/proxy_id.hpp>
 
@@ -30,7 +31,7 @@
 namespace hashphase {
 
 /// Appends every proxy found to the caller's vector, which must outlive the collector. The order depends on the
-/// grid's memory layout; sort if order matters.
+/// grid's memory layout; sort the vector if order matters.
 class CollectAll {
 public:
     explicit CollectAll(std::vector<ProxyId>& found) noexcept : found_(&found) {}
@@ -47,7 +48,7 @@ private:
     std::vector<ProxyId>* found_;
 };
 
-/// Counts the proxies found, over one or more queries.
+/// Counts the proxies that one or more queries find.
 class CollectCount {
 public:
     template <class Scalar>
@@ -64,8 +65,8 @@ private:
     std::size_t count_ = 0;
 };
 
-/// Ends the query at the first proxy found: the cheapest test whether there is any. Which proxy is found depends on
-/// the grid's memory layout; CollectClosest finds the nearest.
+/// Ends the query at the first proxy found. This is the cheapest test whether a region contains any proxy. Which
+/// proxy is found depends on the grid's memory layout; CollectClosest finds the nearest.
 class CollectAny {
 public:
     template <class Scalar>
@@ -76,15 +77,15 @@ public:
     [[nodiscard]] double limit() const noexcept {
         return found_.isNull() ? std::numeric_limits<double>::infinity() : -1.0;
     }
-    /// The proxy found; null if there is none.
+    /// The proxy found; a null id if there is none.
     [[nodiscard]] ProxyId found() const noexcept { return found_; }
 
 private:
     ProxyId found_;
 };
 
-/// Keeps the proxy with the smallest key; among equal keys, the smallest id. Each closer proxy shrinks the search. A
-/// SphereRegion gives the nearest box, a RayRegion the first box on the ray:
+/// Keeps the proxy with the smallest key; if keys are equal, the smallest id. Each closer proxy shrinks the search.
+/// With a SphereRegion, finds the nearest box; with a RayRegion, the first box on the ray:
 ///
 ///     CollectClosest<float> first;
 ///     grid.visit(RayRegion<float>(from, to), first);  // first.key(): the fraction of the ray
@@ -97,9 +98,9 @@ public:
             key_ = key;
         }
     }
-    /// The smallest key so far; infinity if none.
+    /// The smallest key so far; infinity if none was found.
     [[nodiscard]] Scalar limit() const noexcept { return key_; }
-    /// The closest proxy; null if none was found.
+    /// The closest proxy; a null id if none was found.
     [[nodiscard]] ProxyId found() const noexcept { return found_; }
     /// The key of found(), as the region defines it; infinity if none was found.
     [[nodiscard]] Scalar key() const noexcept { return key_; }
@@ -109,7 +110,7 @@ private:
     Scalar key_ = std::numeric_limits<Scalar>::infinity();
 };
 
-/// A proxy and its key in the region. Ordered by key, then by id.
+/// A proxy and its key in the region. Sorts by key, then by id.
 template <class Scalar>
 struct KeyedProxy {
     Scalar key = 0;  ///< defined by the region
@@ -118,8 +119,8 @@ struct KeyedProxy {
     friend constexpr auto operator<=>(const KeyedProxy&, const KeyedProxy&) = default;
 };
 
-/// Keeps the `count` proxies with the smallest keys; among equal keys, the smallest ids. Once `count` proxies are
-/// found, each closer proxy shrinks the search. Cost: O(log count) for each proxy kept.
+/// Keeps the `count` proxies with the smallest keys; if keys are equal, the smallest ids. After `count` proxies, each
+/// closer proxy shrinks the search. Cost: O(log count) for each proxy kept.
 ///
 ///     std::vector<KeyedProxy<float>> nearest;
 ///     CollectNearest<float> five(5, nearest);
@@ -128,7 +129,7 @@ struct KeyedProxy {
 template <class Scalar>
 class CollectNearest {
 public:
-    /// Clears `nearest`, and keeps the proxies in it. `nearest` must outlive the collector.
+    /// Clears `nearest`, and stores the proxies there. `nearest` must outlive the collector.
     CollectNearest(std::size_t count, std::vector<KeyedProxy<Scalar>>& nearest)
         : count_(count), nearest_(&nearest) {
         nearest_->clear();
@@ -154,8 +155,8 @@ public:
         return count_ == 0 ? Scalar(-1) : nearest_->front().key;
     }
 
-    /// Sorts the vector by ascending key and returns it. Call this once, after the query: before, the vector is a
-    /// heap. Cost: O(count log count).
+    /// Sorts the vector by ascending key, and returns it. Call sort() once, after the query: until then, the vector
+    /// is a heap. Cost: O(count log count).
     std::span<const KeyedProxy<Scalar>> sort() {
         std::sort_heap(nearest_->begin(), nearest_->end());
         return *nearest_;
@@ -166,7 +167,7 @@ private:
     std::vector<KeyedProxy<Scalar>>* nearest_;  // a heap with the largest key on top
 };
 
-/// Sets a bit for every proxy found: bit i % 64 of word i / 64, where i is ProxyId::index. This is the cheapest list
+/// Sets a bit for every proxy found: bit i % 64 of word i / 64, where i is ProxyId::index. Bits are the cheapest list
 /// of many proxies. Grid::idAt() returns the id of an index.
 class CollectBits {
 public:
@@ -196,8 +197,8 @@ private:
 };
 
 namespace detail {
-/// True when the key is 0 or more (in the region) and at most the collector's limit, which may have another
-/// precision.
+/// True when the proxy is in the region (key >= 0) and the collector wants it (key <= limit()). The limit may have
+/// another precision.
 template <class Scalar, class Collector>
 [[nodiscard]] bool isWanted(Scalar key, const Collector& collector) {
     const auto limit = collector.limit();

@@ -17,11 +17,11 @@
 
 namespace hashphase {
 
-/// How much of a box must be in a volume: any point (touching), or the whole box (inside).
+/// How much of a box must be in a volume: at least one point (touching), or the whole box (inside).
 enum class Containment : std::uint8_t { touching, inside };
 
-/// Which boxes touch a volume. exact: boxes that share a point with the volume. byPlanes: faster, but finds a few
-/// more boxes near the volume's edges. byPlanes rejects only boxes wholly outside a plane of the volume, or of the
+/// Which boxes count as touching. exact: boxes that share a point with the volume. byPlanes: faster, but also finds a
+/// few boxes near the volume's edges. byPlanes rejects only boxes wholly outside a plane of the volume, or of the
 /// volume's outline along the x axis. Containment::inside ignores Touch.
 enum class Touch : std::uint8_t { exact, byPlanes };
 
@@ -29,9 +29,9 @@ enum class Touch : std::uint8_t { exact, byPlanes };
 /// set of points p with plane.signedDistance(p) >= 0 for each plane. Key: 0. Boxes in cells wholly inside the volume
 /// need no test. Cost: as Grid::visit().
 ///
-/// The volume contains its surface. Rounding favours a hit: by about 1e-6 of the coordinates in single precision,
-/// 1e-9 in double. Without planes, the volume is all of space. A volume is empty if it contains no point, or if a
-/// plane has a NaN or an infinite normal.
+/// The volume contains its surface. Rounding may add boxes that are outside by about 1e-6 of the coordinates in
+/// single precision, or 1e-9 in double. Without planes, the volume is all of space. A volume is empty if it contains
+/// no point, or if a plane has a NaN or an infinite normal.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT ConvexRegion {
 public:
@@ -44,7 +44,7 @@ public:
                           Containment containment = Containment::touching,
                           Touch touch = Touch::exact);
 
-    /// As above, for an array, a vector or a span of Plane.
+    /// Like the first constructor, for an array, a vector or a span of Plane.
     template <class Planes>
         requires std::same_as<std::ranges::range_value_t<Planes>, Plane>
     explicit ConvexRegion(const Planes& planes, Containment containment = Containment::touching,
@@ -53,11 +53,11 @@ public:
 
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept;
 
-    /// True when the region contains no box.
+    /// True when the volume is empty, so no box is found.
     [[nodiscard]] bool isEmpty() const noexcept { return isEmpty_; }
 
-    /// True when `other` is empty, or lies inside this volume, at least `margin` [m] from each plane of this volume.
-    /// False if rounding leaves doubt, or if the corners of `other` cannot be computed.
+    /// True when `other` is empty, or lies inside this volume, at least `margin` [m] from each of its planes. False
+    /// if rounding leaves doubt, or if the corners of `other` cannot be computed.
     [[nodiscard]] bool contains(const ConvexRegion& other, Scalar margin = 0) const;
 
     /// Returns the volume with its planes moved outwards by `distance` [m]. The result contains every point within
@@ -67,19 +67,19 @@ public:
     /// Returns this volume with Touch::exact.
     [[nodiscard]] ConvexRegion exact() const;
 
-    /// True when a and b have equal planes in the same order, equal Containment and equal Touch. Volumes made empty
-    /// by a NaN may compare equal.
+    /// True when a and b have equal planes in the same order, equal Containment and equal Touch. Volumes that are
+    /// empty because of a NaN may compare equal.
     friend bool operator==(const ConvexRegion& a, const ConvexRegion& b) noexcept {
         return a.isSameAs(b);
     }
 
-    /// For grids: the given planes, and more planes that reject outside boxes.
+    /// The planes that grids test: the given planes, and more that reject outside boxes.
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:
-    // A plane as the library stores it: unaligned.
+    // The library's plane type, without alignment.
     using OwnPlane = detail::Plane<Scalar>;
-    // One plane too many fits, for the constructor's assertion.
+    // Has space for one plane too many, for the constructor's assertion.
     using PlaneList = detail::FixedList<OwnPlane, kMostPlanes + 1>;
 
     ConvexRegion(const PlaneList& planes, Containment containment, Touch touch)
@@ -100,7 +100,7 @@ private:
     [[nodiscard]] ConvexRegion movedOut(Scalar distance, Touch touch) const;
 
     detail::Volume<Scalar> volume_;
-    std::uint32_t ownPlaneCount_ = 0;  // the volume's first planes
+    std::uint32_t ownPlaneCount_ = 0;  // number of given planes, first in volume_
     bool isExact_ = false;
     bool isEmpty_ = false;
 };

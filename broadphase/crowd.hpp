@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Renamed: include broadphase/radius_search.hpp, and write RadiusSearch.
+// Renamed to RadiusSearch: include broadphase/radius_search.hpp.
 
 #include <broadphase/radius_search.hpp>
 

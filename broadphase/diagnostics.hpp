@@ -5,11 +5,11 @@
 //
 // Threads   Any thread may call the handlers. Set your handlers before other threads start.
 // Errors    A message handler must not throw. An assertion handler may throw, to leave the misused function.
-// Messages  Bad data, such as a box with a NaN, is ignored. Each object reports its first case to the message
-//           handler, by default to stderr.
-// Misuse    A broken precondition is asserted. The default handler writes the sentence and the source line to stderr,
-//           and aborts. Assertions exist if HASHPHASE_ENABLE_ASSERTS is 1: by default in all build types except
-//           Release, MinSizeRel and none. CMake's HASHPHASE_ASSERTS=ON or OFF overrides the default.
+// Messages  The library ignores bad data, such as a box with a NaN. Each object reports its first case to the message
+//           handler, which writes to stderr by default.
+// Misuse    A broken precondition fails an assertion. The default handler writes the sentence and the source line to
+//           stderr, and aborts. Assertions exist if HASHPHASE_ENABLE_ASSERTS is 1: by default in all build types
+//           except Release, MinSizeRel and the empty type. CMake's HASHPHASE_ASSERTS=ON or OFF overrides the default.
 
 #include <broadphase/export.hpp>
 
@@ -18,8 +18,8 @@ namespace hashphase {
 /// Receives one message: full sentences without a trailing newline.
 using MessageHandler = void (*)(const char* message);
 
-/// Receives a broken precondition: its source text, a sentence about the fault and its remedy, and the source line.
-/// If the handler returns, the program continues at the caller's risk.
+/// Receives a broken precondition: its source text, a sentence that explains the fault and the remedy, and the source
+/// line. If the handler returns, the program continues at the caller's risk.
 using AssertHandler = void (*)(const char* condition, const char* sentence, const char* file,
                                int line);
 

@@ -19,25 +19,25 @@ namespace hashphase {
 template <class Signature>
 class FunctionRef;
 
-/// A reference to a lambda, a function or a function object. For parameters only: it must not outlive the callable.
-/// To store a lambda, declare it as `const auto`. A FunctionRef holds two pointers, never allocates, and is never
-/// empty.
+/// A reference to a lambda, a function or a function object. Use it only for parameters: the callable must exist as
+/// long as the FunctionRef. To store a lambda, declare it as `const auto`. A FunctionRef holds two pointers, never
+/// allocates, and is never empty.
 template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
 public:
-    /// Refers to `callable`, which takes these arguments and returns Result, or a type that converts to Result.
+    /// Refers to `callable`, which takes Arguments, and returns Result or a type that converts to Result.
     template <class Callable>
         requires(!std::is_same_v<std::remove_cvref_t<Callable>, FunctionRef> &&
                  std::is_invocable_r_v<Result, Callable&, Arguments...>)
-    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): copies are ruled out above
+    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): the constraint excludes copies
     FunctionRef(Callable&& callable [[HASHPHASE_LIFETIME_BOUND]])
     noexcept
         : FunctionRef(callable, [](auto& called, Arguments... arguments) -> Result {
               return called(std::forward<Arguments>(arguments)...);
           }) {}
 
-    /// A call returns adapter(callable, arguments...). The adapter's type has no data members, like a lambda without
-    /// captures.
+    /// operator() returns adapter(callable, arguments...). The adapter's type has no data members, like a lambda
+    /// without captures.
     template <class Callable, class Adapter>
         requires(std::is_empty_v<Adapter>&&
                      std::is_invocable_r_v<Result, Adapter, Callable&, Arguments...>)
@@ -59,8 +59,8 @@ public:
         }
     }
 
-    /// Calls the callable: as const if the callable is const, otherwise as non-const. Passes on its exceptions.
-    /// Threads: as the callable allows. Cost: a call through a pointer.
+    /// Calls the callable: as const if the callable is const, otherwise as non-const. Exceptions of the callable pass
+    /// through. Threads: as for the callable itself. Cost: a call through a pointer.
     Result operator()(Arguments... arguments) const {
         return invoke_(object_, std::forward<Arguments>(arguments)...);
     }

@@ -1,27 +1,29 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The grid: files the boxes of up to 2^28 proxies in a spatial hash, and finds them in queries.
+// The grid: stores the boxes of up to 2^28 proxies in the cells of a spatial hash, and finds them in queries.
 //
 // A frame    Move the proxies that changed, then call update() once, or Pairs::update() if the grid has Pairs.
-// Queries    see every change at once. Queries read a list of changes. When this reading has cost a third of filing,
-//            a query files all changes. A grid that is never updated stays correct, with bounded memory.
-// Threads    Queries are const: any number may run at once, also in collectors. During a non-const call, no other
+// Queries    see every change at once, because they also read a list of changes. When reading this list has cost a
+//            third of an update, a query sorts the proxies into cells. A grid that is never updated stays correct,
+//            with bounded memory.
+// Threads    Queries are const: any number may run at once, also from collectors. During a non-const call, no other
 //            thread may use the grid.
 // Units      metres, or any other unit of length used throughout
-// Bad data   A box with a NaN is kept but never found. nanCount() counts such boxes, and the message handler reports
-//            the first. Infinite, huge and inverted boxes follow overlaps() exactly.
-// Denormals  Flushing denormals (below 1.2e-38; double: 2.2e-308) to 0 makes more boxes touch. All threads must use
-//            the same mode.
-// Callbacks  A collector may query the grid. In visit(), it may also change the grid if no other thread queries until
-//            visit() returns. visit() never offers a removed proxy; it may offer added proxies, and moved ones again.
-//            Asserted: no change within visitEach(), ConvexRegion queries or a PairFilter; no update() or
-//            shiftOrigin() within any query.
-// Memory     Calls that allocate can throw std::bad_alloc. They lose nothing, and can be repeated. remove(), and
-//            move() without `parallelFor`, never allocate. Queries that file changes need a second table of the
-//            mobile proxies.
-// Misuse     Asserted: ids are valid. A call with a null or stale id does nothing; box() returns a NaN box. An id of
-//            another grid counts as stale, unless its index and generation match a proxy of this grid.
+// Bad data   A query never finds a box with a NaN. nanCount() counts such boxes, and the message handler reports the
+//            first. overlaps() decides exactly for infinite, huge and inverted boxes.
+// Denormals  If threads flush denormals (below 1.2e-38; double: 2.2e-308) to 0, more boxes touch. All threads must
+//            use the same mode.
+// Callbacks  A collector may query the grid. In visit(), it may also change the grid, if no other thread queries
+//            until visit() returns. visit() never offers a removed proxy; it may offer added proxies, and moved
+//            proxies again. Asserted: collectors of visitEach() or ConvexRegion queries, and PairFilters, change
+//            nothing; no collector calls update() or shiftOrigin().
+// Memory     Calls that allocate can throw std::bad_alloc. No data is lost, and you can repeat the call. remove(),
+//            and move() without `parallelFor`, never allocate. Queries that sort proxies into cells need a second
+//            table of the mobile proxies.
+// Misuse     Asserted: ids are valid. If assertions are off, a call with a null or stale id does nothing; box()
+//            returns a NaN box. An id of another grid counts as stale, unless its index and generation match a proxy
+//            of this grid.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/collectors.hpp>
@@ -57,7 +59,7 @@ struct CellRange {
 };
 
 namespace detail {
-/// Cell numbers lie between -kLastCell and kLastCell.
+/// Cell coordinates are from -kLastCell to kLastCell.
 inline constexpr std::int64_t kLastCell = 9'000'000'000'000'000'000;
 }  // namespace detail
 
@@ -68,7 +70,7 @@ public:
     using Box = Aabb<Scalar>;
     using Point = Vector3<Scalar>;
 
-    /// Throws std::invalid_argument with configError(config) for an invalid configuration.
+    /// Throws std::invalid_argument with configError(config) if `config` is invalid.
     explicit Grid(const GridConfig& config = {});
     /// Asserted: the grid's Pairs and Sweeps are already destroyed.
     ~Grid();
@@ -82,12 +84,12 @@ public:
     [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile,
                               const ProxyGroups& groups = {});
 
-    /// Allocates memory for `count` proxies in total. Until releaseUnusedMemory(), add() allocates nothing for them,
-    /// except for the first groups (see setGroups()). Throws std::length_error beyond 2^28. Cost: O(count) if the
-    /// capacity grows.
+    /// Allocates memory for `count` proxies in total. Up to this number, add() allocates nothing until
+    /// releaseUnusedMemory(), except for the first groups (see setGroups()). Throws std::length_error beyond 2^28.
+    /// Cost: O(count) if the capacity grows.
     void reserve(std::size_t count);
 
-    /// Sets the proxy's box. If its bits are unchanged, this costs one comparison. Cost: O(1) amortised.
+    /// Sets the proxy's box. If no bit changes, the call costs one comparison. Cost: O(1) amortised.
     [[HASHPHASE_ALWAYS_INLINE]] void move(ProxyId id, const Box& box) {
         HASHPHASE_ASSERT(contains(id),
                          "Grid::move(): the id is null, stale, or of another grid. Pass an id that "
@@ -98,19 +100,19 @@ public:
         }
     }
 
-    /// Sets boxes[i] for ids[i], in order. The result is as with single calls, on any number of threads, even if an
-    /// id occurs twice. With `parallelFor`, may throw std::bad_alloc after some moves; in that case, repeat the call.
+    /// Calls move(ids[i], boxes[i]) for each i, in order. `parallelFor` does not change the result, even if an id
+    /// occurs twice: in that case, the call runs on one thread. `parallelFor` needs about 10 bytes of scratch memory
+    /// per proxy, and may throw std::bad_alloc after some moves. If so, repeat the call.
     /// Asserted: both spans have the same length.
-    /// Cost: as move() for each proxy. `parallelFor` needs about 10 bytes of scratch memory per proxy. If an id
-    /// occurs twice, the call runs on one thread.
+    /// Cost: as move() for each proxy.
     void move(std::span<const ProxyId> ids, std::span<const Box> boxes);
     void move(std::span<const ProxyId> ids, std::span<const Box> boxes, ParallelFor parallelFor);
 
-    /// Sets which proxies this proxy may pair with in Pairs; queries ignore groups. Pairs neither tests, filters nor
-    /// remembers pairs that groups refuse, even if hundreds of proxies share a cell. With Pairs, the proxy counts as
-    /// changed: the next Pairs::update() finds its new pairs. Existing pairs stay until their boxes separate, or
-    /// until Pairs::refilter(). On std::bad_alloc, changes nothing.
-    /// Cost: O(1); O(proxies) for the grid's first groups other than ProxyGroups{}.
+    /// Sets which proxies this proxy may pair with in Pairs. Queries ignore groups. Pairs neither tests, filters nor
+    /// remembers pairs that groups refuse, even if hundreds of proxies share a cell. If the grid has Pairs, the proxy
+    /// counts as changed: the next Pairs::update() finds its new pairs. Existing pairs stay until their boxes
+    /// separate, or until Pairs::refilter(). On std::bad_alloc, changes nothing.
+    /// Cost: O(1). O(proxies) when the grid gets its first groups other than ProxyGroups{}.
     void setGroups(ProxyId id, const ProxyGroups& groups);
 
     /// Returns the proxy's groups.
@@ -120,19 +122,19 @@ public:
     void remove(ProxyId id);
 
     /// Removes all proxies. Later calls give the same results, order, cost and indices as a new grid; old ids stay
-    /// invalid. Keeps only records (64 bytes per index, 128 in double precision) and list capacity. Cost:
+    /// invalid. Keeps only the memory of records (64 bytes per index, 128 in double precision) and lists. Cost:
     /// O(indexLimit()).
-    /// Asserted: the grid has no Pairs (use Pairs::clear()); not called within a query. Otherwise, the call does
+    /// Asserted: the grid has no Pairs (use Pairs::clear()); this thread runs no query. If not, the call does
     /// nothing.
     void clear();
 
-    /// Moves the origin to `shift` [m]: subtracts it from every box, and from the grid's Sweeps. Shift your own
-    /// regions, zones and terrains yourself. Returns how many boxes were rounded, except boxes so large that the
-    /// shift vanishes in rounding. Rounded boxes count as moved: some may begin to touch, but overlapping boxes never
-    /// separate. Other proxies keep their pairs, and resting ones stay at rest, except trembling ones. Multiples of a
-    /// power of two, such as 1024 m, round least. On std::bad_alloc, changes nothing.
-    /// Asserted: the shift is finite. Otherwise, the call does nothing.
-    /// Cost: up to three passes over all boxes. If cells change, also an update(), perhaps in the next query or
+    /// Moves the origin to `shift` [m]: subtracts `shift` from every box of the grid and its Sweeps. Shift your
+    /// regions, zones and terrains yourself. Returns the number of rounded boxes, except boxes so large that the
+    /// shift is lost in rounding. Rounded boxes count as moved: some may begin to touch, but overlapping boxes never
+    /// separate. Other proxies keep their pairs, and stay at rest unless they tremble. Multiples of a power of two,
+    /// such as 1024 m, round fewest boxes. On std::bad_alloc, changes nothing.
+    /// Asserted: the shift is finite. If not, the call does nothing.
+    /// Cost: up to three passes over all boxes. If cells change, plus an update(), now or in the next query or
     /// update().
     std::size_t shiftOrigin(const Point& shift);
 
@@ -145,68 +147,69 @@ public:
     /// Number of proxies, including proxies with a NaN box.
     [[nodiscard]] std::size_t size() const noexcept { return store_.proxies.size; }
 
-    /// Size for an array by ProxyId::index: all present and past indices are below it. Only releaseUnusedMemory(), an
-    /// update() after a peak, and GridSnapshot::restore() lower it.
+    /// Size for an array that is indexed by ProxyId::index: present and past indices are below it. Only
+    /// releaseUnusedMemory(), an update() after a peak, and GridSnapshot::restore() lower it.
     [[nodiscard]] std::uint32_t indexLimit() const noexcept {
         return static_cast<std::uint32_t>(store_.proxies.records.size());
     }
 
-    /// Returns the id of the proxy with this index, or null. For data kept by index, such as CollectBits. Cost: O(1).
+    /// Returns the id of the proxy with this index; a null id if no proxy has it. For indices, as in CollectBits.
+    /// Cost: O(1).
     [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept {
         return index < indexLimit() && store_.proxies.isAlive(index) ? store_.proxies.idOf(index)
                                                                      : ProxyId{};
     }
 
-    /// Identifies the set of proxies: when the number changes, kept query results are out of date. Every add(),
+    /// Identifies the set of proxies: when the number changes, stored query results are out of date. Every add(),
     /// remove(), clear(), shiftOrigin() and GridSnapshot::restore() changes it. No two grids share a number.
     [[nodiscard]] std::uint64_t populationNumber() const noexcept { return store_.proxies.number; }
 
     /// Number of proxies whose box has a NaN.
     [[nodiscard]] std::size_t nanCount() const noexcept { return store_.proxies.nanCount; }
 
-    /// Calls visit(ProxyId, const Box&) for every proxy, by ascending index; visit() may change the grid. Cost:
-    /// O(proxies). After a peak of eight times as many proxies: O(n log n), and a temporary list.
+    /// Calls visit(ProxyId, const Box&) for every proxy, in ascending index order. visit() may change the grid. Cost:
+    /// O(n) for n proxies. After a peak of 8 n proxies: O(n log n), and a temporary list.
     template <class Visit>
     void forEach(Visit&& visit) const;
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// Offers to `collector`, once each, all proxies whose box has a key in `region` (regions.hpp, collectors.hpp).
-    /// Returns counts of the work.
+    /// Offers every proxy whose box is in `region` to `collector`, once each (regions.hpp, collectors.hpp). Returns
+    /// counts of the work.
     /// Cost: grows with the cells that the region touches, up to about one test per proxy (16 if many rows of cells
-    /// share a bucket). Proxies that changed since they were filed add one test each. A region with a NaN tests only
-    /// these (a NaN in a ray's fatness: all proxies). If hundreds of proxies share a cell, regions with bounds() test
-    /// only long boxes, and boxes near the region along one axis.
+    /// share a bucket). Plus one test for each proxy that changed since the last sort into cells; a region with a NaN
+    /// tests only these (a NaN in a ray's fatness: all proxies). If hundreds of proxies share a cell, regions with
+    /// bounds() test only long boxes, and boxes near the region along one axis.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
     /// Like visit(), for many regions: collectors[i] receives the proxies of regions[i], in any order. If
-    /// `parallelFor` is parallel, collectors must not share data. Returns the sum of the costs. Faster than single
-    /// calls for regions with bounds(), unless collectors stop early.
+    /// `parallelFor` uses several threads, collectors must not share data. Returns the sum of the costs. For regions
+    /// with bounds(), faster than single calls, unless collectors stop early.
     /// Asserted: both spans have the same length.
     template <class Region, class Collector>
     QueryCost visitEach(std::span<const Region> regions, std::span<Collector> collectors,
                         ParallelFor parallelFor = serialFor) const;
 
-    /// Edge [m] of the cells in visitCell(), cellAt() and cellsOf(): GridConfig::cellSize if not 0, otherwise the
-    /// finest automatic size at the last update (1 without an update, or if the grid was empty).
+    /// Edge [m] of the cells in visitCell(), cellAt() and cellsOf(): GridConfig::cellSize, or if that is 0, the
+    /// finest size chosen at the last update (1 before the first update, or for an empty grid).
     [[nodiscard]] Scalar cellSize() const noexcept { return store_.tables.cellSize; }
 
-    /// Files all changes if that costs less than `count` queries that read the list of changes. Call it before many
-    /// single queries on threads, for equal costs in every run; visitEach() does so itself. Cost: O(1), or as an
-    /// update().
+    /// Sorts changed proxies into cells if that costs less than `count` queries that read the list of changes. Call
+    /// it before many single queries on threads, for equal costs in every run. visitEach() calls it itself. Cost:
+    /// O(1), or as update().
     void expectQueries(std::size_t count) const { store_.expectQueries(count); }
 
-    /// Like expectQueries(), for rays. Also builds the box trees that make rays fast, if `count` rays pay for them.
-    /// Cost: O(1), or as an update() and a sort of the proxies.
+    /// Like expectQueries(), for rays. Also builds the box trees that make rays fast, if `count` rays are worth it.
+    /// Cost: O(1), or as update() and a sort of the proxies.
     void expectRays(std::size_t count) const { store_.expectRays(count); }
 
-    /// Offers to the collector every proxy whose cellsOf() contain `cell`. Cost: O(1) buckets; at most as visit().
+    /// Offers every proxy whose cellsOf() include `cell` to the collector. Cost: O(1) buckets; at most as visit().
     template <class Collector>
     QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
 
-    /// Returns the cell of a point [m]: floor(point / cellSize()) on each axis. The last cells, 9e18 from 0, also
-    /// contain everything beyond. Asserted: the point is finite.
+    /// Returns the cell that contains a point [m]: on each axis, floor(point / cellSize()), limited to -9e18 and
+    /// 9e18. The outermost cells contain all points beyond. Asserted: the point is finite.
     [[nodiscard]] std::array<std::int64_t, 3> cellAt(const Point& point) const;
 
     /// Returns the cells that the proxy's box touches. Asserted: the box is finite. Cost: O(1).
@@ -214,48 +217,48 @@ public:
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Ends a frame: files the changes, and puts long unchanged proxies to rest. Returns counts of the work,
-    /// independent of `parallelFor`.
-    /// Asserted: the grid has no Pairs (use Pairs::update()); not called within a query. Otherwise, the call does
+    /// Ends a frame: sorts the mobile proxies into cells again, except in grids with few proxies. Proxies that have
+    /// not changed for long come to rest. Returns counts of the work, independent of `parallelFor`.
+    /// Asserted: the grid has no Pairs (use Pairs::update()); this thread runs no query. If not, the call does
     /// nothing.
-    /// Cost: O(1) without changes. Otherwise, refiles the mobile proxies, except in grids with few proxies. At worst
-    /// O(n log n), to sort cells that very many proxies share.
+    /// Cost: O(1) if nothing changed. Otherwise grows with the mobile proxies; at worst O(n log n), if very many of n
+    /// proxies share cells.
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
-    /// How often updates and queries filed the mobile proxies.
+    /// Number of times that updates and queries sorted the mobile proxies into cells.
     [[nodiscard]] std::uint64_t filingCount() const noexcept { return store_.tables.filingCount; }
 
     /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Bytes of the box trees that only rays read; memoryBytes() includes them. 0 until enough rays were cast.
+    /// Bytes of the box trees that only rays read, as part of memoryBytes(). 0 until enough rays were cast.
     [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
 
-    /// Frees the box trees for rays; many later rays build them again. Asserted: not within a query.
+    /// Frees the box trees for rays; many later rays build them again. Asserted: this thread runs no query.
     void releaseRayMemory() noexcept;
 
-    /// Frees unused and reserved capacity, scratch memory that later calls allocate again, and unused indices at the
-    /// end: indexLimit() falls, and old ids stay invalid. Afterwards, new proxies take the lowest free index. A proxy
-    /// with a high index keeps all records below that index allocated. After 256 updates in a row with capacity for
-    /// over eight times the existing or reserved proxies, update() does this itself, but keeps reserved capacity.
-    /// Asserted: not within a query.
-    /// Cost: O(indexLimit()), plus moving what stays.
+    /// Frees unused and reserved capacity, and scratch memory that later calls allocate again. Drops unused indices
+    /// at the end: indexLimit() falls, and old ids stay invalid. Afterwards, new proxies take the lowest free index.
+    /// A proxy with a high index keeps all records below that index allocated. Asserted: this thread runs no query.
+    /// If the capacity exceeds eight times the number of proxies (or the reserved number) during 256 updates in a
+    /// row, update() frees unused memory too, except reserved capacity.
+    /// Cost: O(indexLimit()), plus a copy of the remaining data.
     void releaseUnusedMemory() noexcept;
 
     /// Returns a sentence about a broken invariant; empty if all hold. store/store.cpp, hash/table.hpp and
-    /// tree/box_tree.hpp define them.
+    /// tree/box_tree.hpp define the invariants.
     [[nodiscard]] std::string validate() const;
 
     // --- For the library's own parts -------------------------------------------------------------
 
-    /// The grid's parts. They may change with any version.
+    /// Internal data. It may change with any version.
     [[nodiscard]] detail::Store<Scalar>& store() noexcept { return store_; }
     [[nodiscard]] const detail::Store<Scalar>& store() const noexcept { return store_; }
-    /// True while the calling thread is within a query of this grid, or a PairFilter of its Pairs.
+    /// True while the calling thread runs a query of this grid, or a PairFilter of its Pairs.
     [[nodiscard]] bool isWithinQuery() const noexcept {
         return detail::QueryScope::isWithin(&store_);
     }
-    /// False while the calling thread is within a query or PairFilter that forbids changes: see Callbacks.
+    /// False while the calling thread runs a query or PairFilter that forbids changes: see Callbacks.
     [[nodiscard]] bool takesChanges() const noexcept {
         return !detail::QueryScope::forbidsChanges(&store_);
     }

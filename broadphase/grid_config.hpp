@@ -12,19 +12,19 @@ namespace hashphase {
 /// measurement.
 struct GridConfig {
     /// Edge [m] of the finest cells. 0: the grid chooses cell sizes from the proxies' sizes, and chooses again when
-    /// the population changes. Valid: 0, or 1e-30 to 1e30.
+    /// proxies change. Valid: 0, or 1e-30 to 1e30.
     double cellSize = 0;
 
-    /// Cell size of a level divided by the next finer cell size. Only for a fixed cellSize. Valid: 2 to 64.
+    /// Factor from each cell size to the next coarser size. Used only if cellSize is not 0. Valid: 2 to 64.
     double levelRatio = 4;
 
-    /// A proxy can come to rest after this many updates without a change. Updates skip resting proxies. Valid: 1 to
+    /// After this many updates without a change, a proxy can come to rest. Updates skip resting proxies. Valid: 1 to
     /// 1,000,000.
     std::uint32_t updatesBeforeRest = 8;
 
-    /// How far [m] a proxy may move from its filed place before the grid files it again. Trembling or creeping boxes
-    /// then cost less; answers stay exact. Empty: the grid derives it from each proxy's motion. 0: off. Valid: 0 to
-    /// 1e30.
+    /// How far [m] a trembling or slow proxy may move before the grid sorts it into a cell again. Slack makes such
+    /// proxies cheaper; results stay exact. Empty: the grid derives the slack from each proxy's motion. 0: no slack.
+    /// Valid: 0 to 1e30.
     std::optional<double> slack{};
 
     friend bool operator==(const GridConfig&, const GridConfig&) = default;

@@ -11,12 +11,12 @@
 // Restored  After restore(), calls give the same results, order, cost and new ids as after save(). Only
 //           populationNumber() differs.
 // Ids       After restore(), forget ids of proxies that were added after save(): new proxies may get equal ids.
-// Memory    about as many bytes as the grid; the snapshot keeps them for the next save(). On std::bad_alloc,
+// Memory    about as many bytes as the grid; the snapshot keeps its memory for the next save(). On std::bad_alloc,
 //           restore() changes nothing, and save() leaves the snapshot empty.
 // Threads   During a call, no other thread may use the grid or this object.
-// Misuse    Asserted: not called within a query; the Pairs are passed if the grid has any. restore() needs a saved
-//           state, equal settings, and Sweeps exactly if Sweeps were saved. Otherwise a call does nothing.
-// Cost      a copy of what the grid, its Pairs and Sweeps hold
+// Misuse    Asserted: this thread runs no query; if the grid has Pairs, you pass them. restore() needs a saved state,
+//           an equal GridConfig, and Sweeps if and only if Sweeps were saved. If not, a call does nothing.
+// Cost      O(data of the grid, its Pairs and Sweeps)
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
@@ -51,31 +51,32 @@ public:
     /// Saves the Pairs, their grid, and their Sweeps, if any.
     void save(const Pairs<Scalar>& pairs);
 
-    /// Restores the saved state into a grid without Pairs: the saved grid, or another with equal settings.
+    /// Restores the saved state into a grid without Pairs: the saved grid, or another grid with an equal GridConfig.
     void restore(Grid<Scalar>& grid) const;
-    /// Restores the saved state into the Pairs, their grid, and their Sweeps.
+    /// Restores the saved state into the Pairs, their grid, and their Sweeps, if any.
     void restore(Pairs<Scalar>& pairs) const;
 
-    /// Returns a sentence about why restore() would fail; empty if it can succeed. Call this after read().
+    /// Returns a sentence that explains why restore() would fail; empty if it can succeed. Call this after read().
     [[nodiscard]] std::string faultFor(const Grid<Scalar>& grid) const;
     [[nodiscard]] std::string faultFor(const Pairs<Scalar>& pairs) const;
 
-    /// Allocates the memory for restore(), which then allocates nothing until the pairs or their grid release memory.
-    /// On std::bad_alloc, changes nothing. Asserted: as for restore().
+    /// Allocates the memory for restore(). Afterwards, restore() allocates nothing until the Pairs or their grid
+    /// release memory. On std::bad_alloc, changes nothing. Asserted: as for restore().
     void makeRoom(Pairs<Scalar>& pairs) const;
 
-    /// Replaces `bytes` with the snapshot, for sending or storing. Equal states give equal bytes, with a version, a
-    /// checksum, and numbers in this processor's format. Asserted: the snapshot is not empty. Cost: O(state).
+    /// Replaces the content of `bytes` with the snapshot, for sending or storing. Equal states give equal bytes. The
+    /// bytes have a version, a checksum, and numbers in this processor's format. Asserted: the snapshot is not empty.
+    /// Cost: O(state).
     void write(std::vector<std::byte>& bytes) const;
 
-    /// Reads bytes that write() made. Returns an empty string; for faulty bytes, changes nothing, and returns a
-    /// sentence about the fault. Accepts only states that a grid can have, whatever the bytes contain. Cost:
-    /// O(state), plus finding all pairs from scratch.
+    /// Reads bytes that write() made, and returns an empty string. If the bytes are faulty, changes nothing, and
+    /// returns a sentence about the fault. Whatever the bytes contain, accepts only states that a grid can have.
+    /// Cost: O(state), plus finding all pairs from scratch.
     /// After read(), restore() restores boxes, ids, groups, pairs and sweeps, but not which proxies rest. So costs,
     /// and the order in which queries find proxies, may differ.
     [[nodiscard]] std::string read(std::span<const std::byte> bytes);
 
-    /// Returns the id of the saved proxy with this index; null if there is none. Cost: O(1).
+    /// Returns the id of the saved proxy with this index; a null id if there is none. Cost: O(1).
     [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept;
     /// Grid::indexLimit() of the saved grid; 0 for an empty snapshot.
     [[nodiscard]] std::uint32_t indexLimit() const noexcept;

@@ -3,9 +3,10 @@
 
 // Moves many proxies on several threads. The result equals single moves in order.
 //
-// Only one thread writes the record of a proxy. Each part of the batch counts and lists its changes. join() then adds
-// the parts in order. Mobile proxies, and proxies that stay within their slack, move on any thread. For other proxies
-// (at rest, sweeping, or with a NaN), join() calls Store::move() in the order of the batch.
+// Only one thread writes the record of each proxy. Each part of the batch counts and lists its changes. Afterwards,
+// join() adds the changes of all parts to the store, in order. Mobile proxies, and proxies that stay within their
+// slack, move on any thread. For other proxies (at rest, sweeping, or with a NaN), join() calls Store::move() in the
+// order of the batch.
 
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/store/store.hpp>
@@ -28,8 +29,9 @@ struct Move {
     Aabb<Scalar> box;
 };
 
-/// True when no proxy appears twice: all indexOf(i) differ, except kNoProxyIndex. False if count > indexLimit. All
-/// other indices must be below `indexLimit`. Calls indexOf(i) on any thread. Cost: two passes over the moves.
+/// True when no proxy appears twice: the results of indexOf(i) for all i < count differ, except kNoProxyIndex. False
+/// if count > indexLimit. All other results must be below `indexLimit`. Calls indexOf() on any thread. Cost: two
+/// passes over the moves.
 template <class IndexOf>
 [[nodiscard]] bool areDistinct(MoveScratch& scratch, std::size_t count, std::size_t indexLimit,
                                ParallelFor parallelFor, const IndexOf& indexOf) {
@@ -39,7 +41,7 @@ template <class IndexOf>
     if (scratch.namedBy.size() < indexLimit) {
         scratch.namedBy = std::vector<std::atomic<std::uint32_t>>(indexLimit + indexLimit / 2);
     }
-    // If several moves have the same index, only the last writer reads its own i below.
+    // If several i have the same index, only the last writer finds its own i in the second loop.
     parallelFor(count, MoveScratch::kGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (const std::uint32_t index = indexOf(i); index != kNoProxyIndex) {
@@ -66,14 +68,15 @@ class MoveBatch {
 public:
     explicit MoveBatch(Store<Scalar>& store) : store_(store), scratch_(store.scratchOfMoves()) {}
 
-    /// Calls prepare(i) once for each i. If prepare(i) returns true, calls moveOf(i), perhaps twice, and applies it.
-    /// Both run on any thread. No proxy may appear twice. If `parallelFor` throws, some proxies are moved.
+    /// Calls prepare(i) once for each i < count. If prepare(i) returns true, calls moveOf(i), perhaps twice, and
+    /// applies that move. Both functions run on any thread. No proxy may appear twice. If `parallelFor` throws, some
+    /// proxies are moved.
     template <class Prepare, class MoveOf>
     void run(std::size_t count, ParallelFor parallelFor, const Prepare& prepare,
              const MoveOf& moveOf) {
         constexpr std::size_t kGrain = MoveScratch::kGrain;
         std::size_t first = 0;
-        // While a fresh table is in use, move proxies one by one: a change makes it the mobile table.
+        // Moves proxies one by one while Tables::fresh is in use. The first change makes it the mobile table.
         for (; first < count && store_.tables.isFresh.load(std::memory_order_relaxed); ++first) {
             if (prepare(first)) {
                 moveInTurn(moveOf(first));
@@ -120,7 +123,8 @@ private:
         AtEnd& operator=(const AtEnd&) = delete;
     };
 
-    static constexpr std::uint32_t kInTurn = std::uint32_t{1} << 31;  // flags offsets in a part
+    // Marks entries that join() moves.
+    static constexpr std::uint32_t kInTurn = std::uint32_t{1} << 31;
 
     void moveInTurn(const Move<Scalar>& move) { store_.move(move.proxyIndex, move.box); }
 

@@ -8,8 +8,8 @@
 //
 // Time      from 0 (boxes as given) to 1 (moved by the whole displacement), both inclusive
 // Closed    Sharing a face, an edge or a corner for a moment counts as touching.
-// Exact     Whether boxes touch has no rounding error: in single precision always, in double from 1e-140 to 1e300 m.
-//           The time is rounded to double precision.
+// Exact     Whether boxes touch has no rounding error: always in single precision; in double precision from 1e-140 to
+//           1e300 m. The time is rounded to double precision.
 // Units     metres
 // Bad data  A box with a NaN, or with a NaN or infinite displacement, touches nothing.
 // Threads   values and pure functions; use them from any thread
@@ -27,7 +27,7 @@
 
 namespace hashphase {
 
-/// A moving box: at time t, it is `box` shifted by t * displacement. By default, it does not move.
+/// A moving box: at time t, it is `box` shifted by t * displacement. By default, the displacement is 0.
 template <class Scalar>
 struct MovingBox {
     Aabb<Scalar> box;                                        ///< the box at time 0 [m]
@@ -48,14 +48,14 @@ template <class Scalar>
 
 namespace detail {
 
-/// As firstContact(), but slower, and exact even if rounding could change the result.
+/// The slower part of firstContact(), which is exact even if rounding could change the result.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::optional<double> firstContactExactly(
     const MovingBox<Scalar>& a, const MovingBox<Scalar>& b) noexcept;
 
-/// The relative error of computed times is below this.
+/// Upper bound of the relative error of computed times.
 inline constexpr double kTimeDoubt = 0x1p-49;
-/// Below this value, relative errors mean nothing.
+/// For numbers below this value, kTimeDoubt may not hold, because they underflow.
 inline constexpr double kTiniest = 0x1p-1000;
 
 }  // namespace detail
@@ -65,7 +65,7 @@ inline constexpr double kTiniest = 0x1p-1000;
 template <class Scalar>
 [[nodiscard]] inline std::optional<double> firstContact(const MovingBox<Scalar>& a,
                                                         const MovingBox<Scalar>& b) noexcept {
-    // Slab method. Differences and their quotients have the right sign, and one rounding each.
+    // Slab method. Each difference, inverse and product rounds once, and has the right sign.
     double begin = 0;
     double end = 1;
     double sum = 0;
@@ -89,7 +89,7 @@ template <class Scalar>
         begin = ahead * inverse > begin ? ahead * inverse : begin;
         end = opens < end ? opens : end;
     }
-    // No number and no inverse is NaN or infinite.
+    // True when all numbers and all inverses are finite.
     const bool isUsual = detail::isFinite(sum) & !isTiny;
     if (isUsual && neverMeet) {
         return std::nullopt;
@@ -103,8 +103,8 @@ template <class Scalar>
     return begin < end ? std::optional(begin) : std::nullopt;
 }
 
-/// Every box that a moving box touches along its path. The boxes of the grid count as not moving. Key: the time that
-/// firstContact() returns. CollectClosest finds the box that is hit first:
+/// Finds every box that a moving box touches along its path. The boxes of the grid count as not moving. Key: the time
+/// that firstContact() returns. CollectClosest finds the box that is hit first:
 ///
 ///     CollectClosest<float> hit;
 ///     grid.visit(MovingBoxRegion<float>({box, displacement}), hit);  // touches at time hit.key()
@@ -113,16 +113,16 @@ template <class Scalar>
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT MovingBoxRegion {
 public:
-    /// Cost: O(1).
+    /// The region of boxes that `moving` touches. Cost: O(1).
     explicit MovingBoxRegion(const MovingBox<Scalar>& moving);
 
-    /// Returns the time of the first contact, rounded to Scalar; -1 without a contact.
+    /// Returns the time of the first contact, rounded to Scalar; -1 if the boxes do not touch.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& other) const noexcept {
         const std::optional<double> time = firstContact(moving_, MovingBox<Scalar>{other});
         return time ? static_cast<Scalar>(*time) : Scalar(-1);
     }
 
-    /// The path as a ray, a little thicker than the box because of rounding.
+    /// The path as a fat ray, which is a little thicker than the box because of rounding.
     [[nodiscard]] const RayRegion<Scalar>& segment() const noexcept { return segment_; }
 
 private:

@@ -20,15 +20,15 @@
 
 namespace hashphase {
 
-/// Finds neighbours. Keeps its memory: a frame like the previous frame allocates nothing.
+/// Finds pairs of near proxies. Keeps its memory: a frame that needs no more memory than before allocates nothing.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Neighbours {
 public:
     /// Returns all pairs of proxies whose boxes are at most `distance` [m] apart, in any order. Each pair appears
     /// once. The distance is between nearest points, and 0 if boxes overlap. A negative or NaN distance finds
     /// nothing. A box with a NaN has no neighbours. The result does not depend on `parallelFor`, and is valid until
-    /// the next call. Frees unused memory after 256 calls in a row with over eight times the capacity needed.
-    /// Cost: as a grid update, plus the pairs; at most O(n^2) for n proxies.
+    /// the next call. Frees unused memory after 256 calls in a row with over eight times the needed capacity.
+    /// Cost: as Grid::update(), plus O(pairs); at most O(n^2) for n proxies.
     [[nodiscard]] std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
                                                   ParallelFor parallelFor = serialFor) &;
 
@@ -44,11 +44,11 @@ private:
     std::vector<ProxyId> ids_;
     std::vector<detail::PaddedBox<Scalar>> boxes_;
     std::vector<detail::PaddedBox<Scalar>> grown_;
-    std::vector<std::uint32_t> proxyIndices_;  // 0, 1, 2 ...
+    std::vector<std::uint32_t> proxyIndices_;  // 0, 1, 2 ...: indices in ids_
     detail::Table<Scalar> table_;
     detail::PairParts parts_;
     detail::PairList candidates_;
-    std::vector<ProxyPair> found_;  // never shrinks
+    std::vector<ProxyPair> found_;  // the result; never shrinks
     QueryCost cost_;
     detail::PeakWatch peaks_;
 };

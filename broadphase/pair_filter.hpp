@@ -23,18 +23,19 @@ namespace hashphase {
 
 /// Decides which overlapping proxies make a pair: a function that takes two ids, or a function that takes many pairs.
 ///
-/// Calls    Pairs asks once when two proxies begin to overlap, again about a refused pair when either proxy has
-///          changed, and again in refilter(). Pairs never asks about ignored pairs, or pairs that groups refuse.
-/// Order    ascending by ids. Thousands of candidates may arrive in parts; each part is sorted.
+/// Calls    Pairs asks once when two proxies begin to overlap. It asks again about a refused pair when either proxy
+///          has changed, and in refilter(). It never asks about ignored pairs, or pairs that groups refuse.
+/// Order    ascending by ids. Thousands of candidates may arrive in parts; in that case, each part is sorted.
 /// Threads  The filter runs on the thread that calls Pairs.
-/// Misuse   The filter may query the grid. Asserted: it does not change the grid.
+/// Misuse   Asserted: the filter does not change the grid. It may query the grid.
 ///
-/// Use PairFilter only for parameters, as FunctionRef: it refers to the function, without a copy.
+/// Use PairFilter only for parameters, like FunctionRef: it refers to the function, and makes no copy.
 class PairFilter {
 public:
     /// Returns whether the two proxies make a pair. The first id has the lower index.
     using OfOne = FunctionRef<bool(ProxyId, ProxyId)>;
-    /// Sets accepted[i], which is 0 before, to 1 if asked[i] makes a pair. Both spans have equal lengths.
+    /// Sets accepted[i] to 1 if the proxies asked[i] make a pair. Before the call, accepted[i] is 0. Both spans have
+    /// equal lengths.
     using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
 
     template <std::convertible_to<OfOne> Ask>
@@ -47,7 +48,8 @@ public:
     PairFilter(Ask&& ask [[HASHPHASE_LIFETIME_BOUND]])  // NOLINT: conversion is its purpose
         : ask_(ask) {}
 
-    /// Asks about all pairs, and writes the answers to `accepted`, which must have equal length and hold zeros.
+    /// Asks about all pairs, and writes the answers to `accepted`, which must have equal length and contain only
+    /// zeros.
     void operator()(std::span<const ProxyPair> asked, std::span<char> accepted) const {
         ask_(asked, accepted);
     }
@@ -68,19 +70,19 @@ private:
     return true;
 }
 
-/// The pairs that began and the pairs that ended, each list sorted. Lists of update() are valid until the next
-/// update(). Lists of other calls are valid until the next call that returns PairChanges.
+/// The pairs that began and the pairs that ended. Each list is sorted. Lists of update() are valid until the next
+/// update(). Lists of other functions are valid until the next call that returns PairChanges.
 struct PairChanges {
     std::span<const ProxyPair> born;  ///< new pairs
-    std::span<const ProxyPair> died;  ///< ended pairs, also of removed proxies
+    std::span<const ProxyPair> died;  ///< ended pairs, also with removed proxies
 };
 
-/// What an update cost.
+/// The cost of an update.
 struct PairCost {
-    std::uint64_t boxesTested = 0;  ///< box tests in all searches for candidates
+    std::uint64_t boxesTested = 0;  ///< box tests in the search for new candidates
     /// Number of known candidates whose overlap the update tested again.
     std::uint64_t pairsWatched = 0;
-    UpdateCost grid;  ///< what the update of the grid cost
+    UpdateCost grid;  ///< the cost of updating the grid
 };
 
 }  // namespace hashphase

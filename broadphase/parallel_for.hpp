@@ -13,11 +13,11 @@ namespace hashphase {
 using LoopBody = FunctionRef<void(std::size_t begin, std::size_t end)>;
 
 /// Runs iterations 0 to count - 1, and returns when all are done. Calls body(begin, end) in any order, on any
-/// threads. The ranges cover each iteration once. A range has about `grain` iterations or more (0 means 1).
+/// threads. Each iteration is in exactly one range. A range has about `grain` iterations or more (0 means 1).
 ///
-/// Write your own for any task system, or use bulletFor (bullet_parallel_for.hpp) or tbbFor (tbb_parallel_for.hpp).
-/// Results do not depend on the choice. For speed, cut equal counts into equal ranges, and run each range on the same
-/// thread every time: its cache holds the data.
+/// Write your own loop for any task system, or use bulletFor (bullet_parallel_for.hpp) or tbbFor
+/// (tbb_parallel_for.hpp). All give the same results. For speed, cut equal counts into equal ranges, and run each
+/// range on the same thread every time: the cache of this thread holds the data.
 using ParallelFor = FunctionRef<void(std::size_t count, std::size_t grain, LoopBody body)>;
 
 /// The serial loop: all iterations in one call, on the caller's thread.

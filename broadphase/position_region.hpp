@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Treats proxies as points, at their positions, and finds the positions in a ball. SphereRegion (regions.hpp)
-// measures the distance to the box instead.
+// Treats each proxy as a point, its position, and finds the positions in a ball. SphereRegion (regions.hpp) measures
+// the distance to the box instead.
 //
 //     CollectCount neighbours;
 //     grid.visit(PositionRegion<float>(positionOf(grid.box(agent)), 10), neighbours);  // includes the agent
@@ -22,8 +22,8 @@
 
 namespace hashphase {
 
-/// Returns the centre of the box [m], inside the closed box; the sum does not overflow. NaN for a box without a
-/// position. Cost: O(1).
+/// Returns the centre of the box [m], which rounding never moves out of the closed box. Large coordinates do not
+/// overflow. NaN if the box has no position. Cost: O(1).
 template <class Scalar>
 [[nodiscard]] Vector3<Scalar> positionOf(const Aabb<Scalar>& box) noexcept {
     Vector3<Scalar> position;
@@ -44,7 +44,7 @@ template <class Scalar>
 
 /// Every proxy whose position is within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the
 /// centre; it may round to 0 or infinity. If the distance itself overflows, only an infinite radius finds the proxy.
-/// The region is empty for a negative or NaN radius, or a centre that is not finite.
+/// The region is empty if the radius is negative or NaN, or the centre is not finite.
 template <class Scalar>
 class PositionRegion {
 public:
@@ -56,7 +56,7 @@ public:
         }
     }
 
-    /// Returns the squared distance [m^2] to the box's position; -1 outside the ball.
+    /// Returns the squared distance [m^2] to the box's position; -1 if the position is outside the ball.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         return keyAt(positionOf(box));
     }
@@ -74,7 +74,8 @@ public:
             const auto nan = Vector3<Scalar>::Constant(Limits::quiet_NaN());
             return {nan, nan};
         }
-        // Rounded outward, because key() rounds. A box overlaps the cube if the cube contains its position.
+        // Rounded outward, because key() rounds. If the cube contains the position of a box, the box overlaps the
+        // cube.
         const Scalar reach = center_.cwiseAbs().maxCoeff() + radius_;
         const Scalar padded = radius_ + 4 * Limits::epsilon() * reach + Limits::min();
         const auto half = Vector3<Scalar>::Constant(padded);

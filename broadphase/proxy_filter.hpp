@@ -10,7 +10,7 @@
 
 namespace hashphase {
 
-/// Returns whether a query may find a proxy, for example by team or by group and mask
+/// Returns whether a query may find a proxy, for example because of its team, or its group and mask
 /// (integration/bullet/group_filter.hpp). A query asks only about proxies in its region, on the query's threads.
 ///
 /// Use ProxyFilter only for parameters: it refers to the function. In variables, keep the function itself:
@@ -24,7 +24,7 @@ using ProxyFilter = FunctionRef<bool(ProxyId)>;
     return true;
 }
 
-/// Passes only accepted proxies to another collector:
+/// Passes only proxies that a filter accepts to another collector:
 ///
 ///     CollectIf enemies(all, [&](ProxyId id) { ... });
 ///     grid.visit(region, enemies);
@@ -33,7 +33,7 @@ using ProxyFilter = FunctionRef<bool(ProxyId)>;
 template <class Collector, class Filter>
 class CollectIf {
 public:
-    /// `collector` must outlive this object. Copies the filter, a bool(ProxyId).
+    /// `collector` must outlive this object. Copies `filter`, a bool(ProxyId) function.
     CollectIf(Collector& collector, Filter filter)
         : collector_(collector), filter_(std::move(filter)) {}
 
@@ -43,7 +43,7 @@ public:
             collector_.add(id, key);
         }
     }
-    /// The limit of the other collector: the search shrinks as without the filter.
+    /// The limit of the other collector, so accepted proxies shrink the search.
     [[nodiscard]] auto limit() const { return collector_.limit(); }
 
 private:

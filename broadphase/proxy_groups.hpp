@@ -6,7 +6,7 @@
 
 namespace hashphase {
 
-/// Which proxies a proxy may pair with: see mayPair() and Grid::setGroups(). Your program defines the bits. By
+/// The groups with which a proxy may pair: see mayPair() and Grid::setGroups(). Your program defines the bits. By
 /// default, all proxies may pair. A proxy whose group or mask is 0 pairs with no proxy.
 ///
 ///     constexpr std::uint32_t kWalls = 1, kBullets = 2;
@@ -18,7 +18,7 @@ struct ProxyGroups {
     friend constexpr bool operator==(const ProxyGroups&, const ProxyGroups&) = default;
 };
 
-/// True when each group shares a bit with the other proxy's mask, as in Bullet.
+/// True when the group of each proxy shares a bit with the other proxy's mask, as in Bullet.
 [[nodiscard]] constexpr bool mayPair(const ProxyGroups& a, const ProxyGroups& b) noexcept {
     return (a.group & b.mask) != 0 && (b.group & a.mask) != 0;
 }

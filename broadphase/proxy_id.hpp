@@ -5,7 +5,7 @@
 //
 //     const ProxyId id = grid.add(box);
 //     objects.resize(grid.indexLimit());
-//     objects[id.index] = &object;  // your data, by index
+//     objects[id.index] = &object;  // your data at this index
 
 #include <broadphase/export.hpp>
 
@@ -18,10 +18,10 @@ namespace hashphase {
 
 /// Identifies one proxy of one grid. ProxyId{} is null. Ids are ordered by index, then by generation.
 struct ProxyId {
-    /// Small and dense: use it as an index into your own arrays. It is below the largest number of proxies ever alive
-    /// at once. Here, removed proxies count as alive until the next update.
+    /// Small and dense: use it as an index into your own arrays. It is below the largest number of proxies that were
+    /// ever alive at once. Until the next update, this number includes removed proxies.
     std::uint32_t index = 0;
-    /// Distinguishes a proxy from earlier ones with the same index.
+    /// Distinguishes a proxy from earlier proxies with the same index.
     std::uint32_t generation = 0;
 
     /// True for ProxyId{}, the id of no proxy. The id of a removed proxy is not null: see Grid::contains().
@@ -37,13 +37,13 @@ struct ProxyPair {
     friend constexpr auto operator<=>(const ProxyPair&, const ProxyPair&) = default;
 };
 
-/// How a proxy will probably behave: mobile like a body, or resting like a wall. This hint changes no result. A
+/// How a proxy will probably behave: mobile like a body, or resting like a wall. This hint changes no result: a
 /// resting proxy may move, and an unchanged mobile proxy comes to rest.
 enum class Mobility : std::uint8_t { mobile, resting };
 
 namespace detail {
 
-/// A hash for ids with an index and a generation.
+/// A hash function for ids with an index and a generation.
 template <class Id>
 struct IdHash {
     [[nodiscard]] std::size_t operator()(const Id& id) const noexcept {
@@ -54,6 +54,7 @@ struct IdHash {
 }  // namespace detail
 }  // namespace hashphase
 
-/// Makes ProxyId a key of std::unordered_map. For data about every proxy, prefer an array by ProxyId::index.
+/// Makes ProxyId a key of std::unordered_map. For data about every proxy, prefer an array that is indexed by
+/// ProxyId::index.
 template <>
 struct std::hash<hashphase::ProxyId> : hashphase::detail::IdHash<hashphase::ProxyId> {};

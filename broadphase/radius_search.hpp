@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds, for all agents at once, the neighbours within a radius, as AI needs in every frame.
+// Finds the neighbours of all agents within a radius, in one pass, as AI needs in every frame.
 //
 //     search.take(grid, 10);
 //     search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) { ... });
 //
 // A frame     Call take(), which copies the positions of all proxies. Then search any number of times.
-// Agents      Agents are proxies at the centres of their boxes (positionOf() in position_region.hpp). Each take()
-//             numbers the agents from 0, in spatial order.
-// Neighbours  the other agents with (dx^2 + dy^2) + dz^2 <= radius^2, each operation rounded to Scalar. Radii outside
-//             2^-60 to 2^60 (double: 2^-480 to 2^480) are first scaled by a power of two. So if a finds b,
-//             b finds a. Results are equal on all instruction sets, with any number of threads.
+// Agents      An agent is a proxy at the centre of its box (positionOf() in position_region.hpp). Each take() numbers
+//             the agents from 0, in spatial order.
+// Neighbours  The neighbours of an agent are the other agents with (dx^2 + dy^2) + dz^2 <= radius^2. Each operation
+//             rounds to Scalar. Radii outside 2^-60 to 2^60 (double: 2^-480 to 2^480) are first scaled by a power of
+//             two. If a finds b, b finds a. Results are equal on all instruction sets, with any number of threads.
 // Bad data    A proxy with a NaN, infinite or inverted box is not an agent: see leftOutCount(). A negative or NaN
 //             radius gives no neighbours. An infinite radius gives all other agents.
-// Threads     Accessors may run on several threads at once. During other calls, no other thread may use this object.
-//             take() reads the grid, as queries do.
+// Threads     Const functions may run on several threads at once. During other calls, no other thread may use this
+//             object. take() reads the grid, as queries do.
 // Units       metres, or the grid's unit of length
 // See also    Neighbours (neighbours.hpp) lists pairs of boxes.
 
@@ -38,13 +38,13 @@
 
 namespace hashphase {
 
-/// Finds neighbours. Keeps its memory: a frame like the previous frame allocates only for additional threads.
+/// Finds neighbours. Keeps its memory: a frame like the frame before allocates only for additional threads.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT RadiusSearch {
 public:
     using Point = Vector3<Scalar>;
 
-    /// The largest groupCount of countGroups().
+    /// The largest groupCount that countGroups() accepts.
     static constexpr std::uint32_t kMostGroups = detail::kMostGroups;
 
     RadiusSearch();
@@ -56,9 +56,9 @@ public:
 
     /// Makes agents of all proxies that the filter accepts, for searches with `radius` [m]. Calls the filter on this
     /// thread and the threads of `parallelFor`, twice for some proxies. If memory runs out or the filter throws,
-    /// there are no agents. Frees unused memory after 256 calls in a row with over eight times the capacity needed.
+    /// there are no agents. Frees unused memory after 256 calls in a row with over eight times the needed capacity.
     /// Asserted: the filter changes neither the grid nor this object.
-    /// Cost: a few passes over the grid's proxies.
+    /// Cost: O(proxies), in a few passes.
     void take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter = acceptAll,
               ParallelFor parallelFor = serialFor);
 
@@ -70,7 +70,7 @@ public:
     /// Number of accepted proxies that are not agents because they have no position.
     [[nodiscard]] std::uint32_t leftOutCount() const noexcept { return leftOut_; }
 
-    /// id() returns the agent's proxy, ids() all proxies by agent, position() the position [m].
+    /// id(agent) and ids()[agent] return the proxy of an agent. position() returns the position of an agent [m].
     /// Asserted: agent < size().
     [[nodiscard]] ProxyId id(std::uint32_t agent) const {
         HASHPHASE_ASSERT(agent < size(),
@@ -88,9 +88,9 @@ public:
     // --- Searches --------------------------------------------------------------------------------
 
     /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent, on the threads of
-    /// `parallelFor`. The span is valid until visit() returns. Its order does not depend on `parallelFor`. Returns
-    /// the cost; its `hits` are neighbours. Asserted: visit() calls only accessors of this object. Cost: tests each
-    /// agent against the agents in cells around it; at most O(n^2) for n agents.
+    /// `parallelFor`. The span is valid until visit() returns. The order of neighbours does not depend on
+    /// `parallelFor`. Returns the cost; its `hits` are neighbours. Asserted: visit() calls only const functions of
+    /// this object. Cost: O(n m) for n agents, with m agents in the cells around each; at most O(n^2).
     template <std::invocable<std::uint32_t, std::span<const std::uint32_t>> Visit>
     QueryCost forEach(Visit&& visit, ParallelFor parallelFor = serialFor) {
         using Target = std::remove_reference_t<Visit>;
@@ -116,14 +116,14 @@ public:
     /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Frees all memory, and removes all agents. Asserted: not within a filter or a visitor.
+    /// Frees all memory, and removes all agents. Asserted: no filter or visitor is running.
     void releaseMemory() noexcept;
 
 private:
     /// Position and generation of a proxy.
     struct Staged {
         std::array<Scalar, 3> position;
-        std::uint32_t generation;  // 0: not alive, or refused by the filter
+        std::uint32_t generation;  // 0 if not alive, or refused by the filter
     };
     struct Tile;
 
@@ -139,13 +139,14 @@ private:
     [[nodiscard]] std::unique_ptr<Tile> borrowTile();
     void returnTile(std::unique_ptr<Tile> tile);
 
+    // Returns the ProxyId::index at this place.
     [[nodiscard]] std::uint32_t indexAt(std::size_t place) const noexcept {
         return few_.empty() ? static_cast<std::uint32_t>(place) : few_[place];
     }
 
-    std::vector<std::uint32_t> few_;  // indices of proxies if few indices have one, else empty
-    std::size_t placeCount_ = 0;      // size of few_, or number of all indices
-    std::vector<Staged> staged_;      // by place (see indexAt())
+    std::vector<std::uint32_t> few_;  // all used indices if they are few, else empty
+    std::size_t placeCount_ = 0;      // few_.size(), or Grid::indexLimit() if few_ is empty
+    std::vector<Staged> staged_;      // indexed by place: see indexAt()
     std::vector<std::uint32_t> cellOfPlace_;
     detail::PeakWatch peaks_;
     std::uint32_t agentCount_ = 0;
@@ -153,10 +154,10 @@ private:
     detail::PointSample sample_;
     detail::WrappedGrid wrappedGrid_;
 
-    std::vector<std::uint32_t> cellStart_;  // first agent of each cell, then size()
-    std::vector<std::uint32_t> places_;     // of agents, sorted by cell
+    std::vector<std::uint32_t> cellStart_;  // first agent of each cell; at the end, size()
+    std::vector<std::uint32_t> places_;     // place of each agent, sorted by cell
     std::vector<ProxyId> ids_;
-    std::array<std::vector<Scalar>, 3> columns_;  // positions; kColumnPadding longer
+    std::array<std::vector<Scalar>, 3> columns_;  // positions of agents, and kColumnPadding more
     std::vector<std::uint32_t> numbers_;          // 0, 1, 2 ...; never shrinks
     std::vector<std::uint8_t> groups_;
     detail::RadiusView<Scalar> view_{};

@@ -3,16 +3,16 @@
 
 // Regions define where a query searches. A region has two members:
 //
-//   key(box)   returns the box's distance as the region defines it, 0 or more; negative outside the region
+//   key(box)   returns a distance of 0 or more that the region defines; negative if the box is outside
 //   bounds()   returns a box that overlaps every box in the region
 //
 //     CollectClosest<float> closest;
 //     grid.visit(SphereRegion<float>(center, 10), closest);  // the box nearest to `center`, within 10 m
 //
-// key() decides the result. bounds() only saves work: the box may be too large, never too small. A class with a
-// constant kIsItsBounds promises that every box that overlaps bounds() has the key 0. Instead of bounds(), a region
-// along a line has segment(): a RayRegion whose key is at most the region's key, for every box in the region. A
-// convex region has volume() instead.
+// key() decides the result. bounds() only saves work: the box may be too large, but never too small. A constant
+// kIsItsBounds in the class promises that every box that overlaps bounds() has the key 0. A region along a line has
+// segment() instead of bounds(): a RayRegion whose key is at most the region's key, for every box in the region. A
+// convex region has volume() instead of bounds().
 //
 // Others   PositionRegion (positions, not boxes), CellsRegion (an estimate), MovingBoxRegion (first contact of a
 //          moving box), ConvexRegion (frusta), and any class of yours with these members
@@ -32,7 +32,7 @@
 
 namespace hashphase {
 
-/// Every box that overlaps the closed `box`. overlaps() decides, also for infinite and inverted boxes. Key: 0.
+/// Every box that overlaps the closed `box`, as overlaps() decides, also for infinite and inverted boxes. Key: 0.
 template <class Scalar>
 struct BoxRegion {
     static constexpr bool kIsItsBounds = true;
@@ -47,7 +47,8 @@ struct BoxRegion {
 };
 
 /// Every box within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the centre to the box, 0
-/// if the centre is inside the box. With a negative radius, the region is empty. An infinite radius gives every box.
+/// if the centre is inside the box. If the radius is negative, the region is empty. If the radius is infinite, the
+/// region contains every box.
 template <class Scalar>
 class SphereRegion {
 public:
@@ -55,8 +56,8 @@ public:
     SphereRegion(const Vector3<Scalar>& center, Scalar radius)
         : center_(center), radius_(radius), scale_(detail::unitScale(radius)) {}
 
-    /// Returns the squared distance [m^2]; -1 outside the ball. The square may round to 0 or infinity. This does not
-    /// affect whether the box is in the ball.
+    /// Returns the squared distance [m^2]; -1 if the box is outside the ball. The square may round to 0 or infinity.
+    /// This does not affect whether the box is in the ball.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         Scalar outside[3] = {};
         for (int axis = 0; axis < 3; ++axis) {
@@ -79,7 +80,7 @@ public:
                 Vector3<Scalar>::Constant(isEmpty ? Limits::quiet_NaN() : Limits::infinity());
             return {-all, all};
         }
-        // Rounded outward: key() rounds, and must not find a box outside the bounds.
+        // Rounded outward: key() rounds, but must not find a box outside the bounds.
         const Scalar reach = center_.cwiseAbs().maxCoeff() + radius_;
         const Scalar padded = radius_ + 4 * Limits::epsilon() * reach + Limits::min();
         const Vector3<Scalar> half = Vector3<Scalar>::Constant(padded);
@@ -92,11 +93,11 @@ private:
     Scalar scale_;
 };
 
-/// Every box that a ray meets. The ray is a segment, or a box that moves along the segment (a "fat" ray). Key: the
+/// Every box that a ray hits. The ray is a segment, or a box that moves along the segment (a "fat" ray). Key: the
 /// fraction of the segment at which the ray enters the box, 0 if the ray begins inside.
 ///
-/// Touching a face, an edge or a corner is a hit, and rounding favours a hit. The length may be 0. With an infinite
-/// end or length, the region is empty.
+/// Touching a face, an edge or a corner is a hit. If rounding leaves doubt, the ray hits. The length may be 0. If an
+/// end or the length is infinite, the region is empty.
 ///
 ///     CollectClosest<float> first;
 ///     grid.visit(RayRegion<float>(from, to), first);  // entry: from + first.key() * (to - from)
@@ -104,7 +105,7 @@ template <class Scalar>
 class RayRegion {
 public:
     /// The segment from `from` to `to` [m]. `fatness` [m] is the moving box relative to the moving point, for example
-    /// (-halfExtents, halfExtents). By default, it is a point.
+    /// (-halfExtents, halfExtents). By default, the ray is a line without thickness.
     RayRegion(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
               const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
         : from_(from), direction_(to - from), fatness_(fatness) {
@@ -124,14 +125,14 @@ public:
         inverse_ = (scale_ * direction_).cwiseInverse();
         for (int axis = 0; axis < 3; ++axis) {
             if (!detail::isFinite(inverse_[axis]) && !detail::isNan(inverse_[axis])) {
-                // A component too small to be inverted thickens the box instead.
+                // If a component has no finite inverse, the box grows by that component instead.
                 (direction_[axis] > 0 ? fatness_.max() : fatness_.min())[axis] += direction_[axis];
                 direction_[axis] = 0;
             }
         }
     }
 
-    /// Returns the fraction from 0 to 1 at which the ray enters the box; -1 for a miss.
+    /// Returns the fraction from 0 to 1 at which the ray enters the box; -1 if the ray misses.
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         if (HASHPHASE_OVERLOOKS_NAN && isEmpty()) {
             return -1;
@@ -145,7 +146,7 @@ public:
             const Scalar relativeMin = box.min()[axis] - from_[axis];
             const Scalar relativeMax = box.max()[axis] - from_[axis];
             if (direction_[axis] == 0) {
-                // Do not subtract: both numbers may be infinite.
+                // Compare without a difference: both numbers may be infinite.
                 if (!(relativeMin <= fatness_.max()[axis] && relativeMax >= fatness_.min()[axis])) {
                     return -1;
                 }
@@ -172,22 +173,23 @@ public:
     [[nodiscard]] bool isEmpty() const noexcept { return detail::anyNan(direction_); }
     /// The start of the ray [m].
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }
-    /// `to` - `from` [m]; components too small to be inverted are 0. NaN when isEmpty().
+    /// `to` - `from` [m]; components without a finite inverse are 0. NaN when isEmpty().
     [[nodiscard]] const Vector3<Scalar>& direction() const noexcept { return direction_; }
     /// The `fatness` given to the constructor [m], thicker by at most a rounding error.
     [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
 
-    /// Returns this ray: grids search regions with segment() in a tree of boxes, not in cells.
+    /// Returns this ray: grids search regions with segment() along the ray, in cells or in a tree of boxes.
     [[nodiscard]] const RayRegion& segment() const noexcept { return *this; }
 
 private:
+    // Covers rounding errors.
     static constexpr Scalar kWidened = 1 + 6 * std::numeric_limits<Scalar>::epsilon();
 
     Vector3<Scalar> from_;
     Vector3<Scalar> direction_;
     Vector3<Scalar> inverse_;  // inverse of scale_ * direction_
     Aabb<Scalar> fatness_;
-    Scalar last_ = 1;  // key at the end of the ray, above 1 if rounding matters
+    Scalar last_ = 1;  // largest key before clamping to 1; above 1 for fat rays
     // A power of two: below 1 if the inverse would be denormal.
     Scalar scale_ = 1;
 };

@@ -10,18 +10,18 @@ namespace hashphase {
 /// How to search for proxies that a sweeping proxy touches. All modes except `none` find the same proxies.
 enum class Sweep : std::uint8_t {
     none,       ///< no search: the proxy does not sweep
-    box,        ///< in the box around the path: for short paths, and paths along an axis
-    line,       ///< along the path: for long paths, such as paths of bullets
+    box,        ///< search the box around the path: for short paths, and paths along an axis
+    line,       ///< search along the path: for long paths, as of bullets
     automatic,  ///< `line` if the path is long along two or three axes, else `box`
 };
 
-/// What sweeps cost in an update.
+/// The cost of sweeps in an update.
 struct SweepCost {
     std::uint32_t sweeping = 0;        ///< proxies that swept
-    std::uint32_t segments = 0;        ///< searched boxes around parts of paths
+    std::uint32_t segments = 0;        ///< parts of paths that were searched as a box
     std::uint32_t rays = 0;            ///< long paths that were searched as a ray
-    std::uint64_t boxesTested = 0;     ///< box tests: with segments, rays and each other
-    std::uint64_t contactsTested = 0;  ///< calls of firstContact(), without rays
+    std::uint64_t boxesTested = 0;     ///< box tests with segments, rays and sweeping proxies
+    std::uint64_t contactsTested = 0;  ///< calls of firstContact(), except for rays
 };
 
 }  // namespace hashphase

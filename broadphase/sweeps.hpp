@@ -12,13 +12,14 @@
 //     pairs.update();  // the proxies that the bullet touches along its path
 //
 // A frame   Call Grid::move() with the box at the start of the frame, set() with the displacement, then
-//           Pairs::update(). Both stay until you set them again.
-// Queries   Grid queries use the box in the grid. It may differ from the moving box, for example contain the path.
-//           Sweeps::visit() finds the proxy along its path, more exactly.
+//           Pairs::update(). Box and displacement stay until you set them again.
+// Queries   Grid queries use the box in the grid. This box may differ from the moving box, for example contain the
+//           whole path. Sweeps::visit() searches along the path, more exactly.
 // Modes     All modes find the same pairs, at different costs: the exact firstContact() confirms each pair.
 // Cost      A sweep takes time even at low speed. Sweep::box searches the box around the path. Other proxies cost no
 //           more than without sweeps.
-// Threads   visit() may run on several threads at once. During other calls, no other thread may use the grid.
+// Threads   visit() may run on several threads at once. During other calls, no other thread may use the grid or
+//           Sweeps.
 // Units     metres; times are fractions of the frame, 0 to 1
 // Bad data  A proxy with a NaN or infinite displacement does not sweep. The message handler reports the first case.
 // Misuse    Asserted: the grid contains the id.
@@ -44,35 +45,36 @@
 
 namespace hashphase {
 
-/// How far proxies move in a frame, for Pairs and for queries.
+/// The displacements of proxies in a frame, for Pairs and for queries.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Sweeps {
 public:
-    /// Keeps a reference to the grid, which must outlive this object (asserted). Pass the object to Pairs.
+    /// Keeps a reference to the grid, which must outlive this object (asserted). Pass this object to Pairs.
     explicit Sweeps(Grid<Scalar>& grid);
     Sweeps(const Sweeps&) = delete;
     Sweeps& operator=(const Sweeps&) = delete;
 
     /// Lets the proxy's box sweep by `displacement` [m] in each frame, until the next set(). A zero displacement or
-    /// Sweep::none ends the sweep. If it throws std::bad_alloc, nothing has changed. Asserted: not within a query
-    /// that forbids changes. Cost: O(1) amortised.
+    /// Sweep::none ends the sweep. On std::bad_alloc, changes nothing. Asserted: this thread runs no query that
+    /// forbids changes. Cost: O(1) amortised.
     void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
 
     /// Lets `way.box` sweep instead of the box in the grid. The proxy's pairs depend only on `way`. Grid queries
     /// still use the box in the grid. Grid::shiftOrigin() shifts both boxes.
     void set(ProxyId id, const MovingBox<Scalar>& way, Sweep sweep = Sweep::automatic);
 
-    /// Returns the moving box at the start of its path, and its displacement [m]. For a proxy that does not sweep:
-    /// the box in the grid, and a zero displacement.
+    /// Returns the moving box at the start of its path, and its displacement [m]. If the proxy does not sweep: the
+    /// box in the grid, and a zero displacement.
     [[nodiscard]] MovingBox<Scalar> motion(ProxyId id) const;
 
     /// Number of sweeping proxies, including proxies removed from the grid since the last update.
     [[nodiscard]] std::size_t size() const noexcept { return sweeping_.motions.size(); }
 
-    /// As Grid::visit(), but finds sweeping proxies along their paths. Tests the box around the path, or boxes around
-    /// up to 64 parts. Finds every proxy that passes through the region, and perhaps near misses. Key: the smallest
-    /// key of these boxes. With a PositionRegion or Containment::inside, only boxes at the start of paths are certain
-    /// to be found. Cost: as Grid::visit(), plus the parts of each path.
+    /// Like Grid::visit(), but finds sweeping proxies along their paths. Tests the box around the path, or boxes
+    /// around up to 64 parts of the path. Finds every proxy that passes through the region, and perhaps near misses.
+    /// Key: the smallest key of these boxes. With a PositionRegion or Containment::inside, a sweeping proxy is
+    /// certain to be found only if its box at the start of the path is in the region. Cost: as Grid::visit(), plus
+    /// the parts of each path.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
@@ -82,14 +84,14 @@ public:
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Frees unused capacity, also for indices that the grid has dropped, and scratch memory that the next update
-    /// allocates again. Asserted: not within a query. Cost: O(dropped indices), plus a copy of the rest.
+    /// allocates again. Asserted: this thread runs no query. Cost: O(dropped indices), plus a copy of the rest.
     void releaseUnusedMemory() noexcept;
 
-    /// Returns the broken invariant as a sentence; empty when it holds. Every motion is listed by its index, and no
-    /// other index is listed.
+    /// Invariant: each motion is stored at the index of its proxy, and no other index has a motion. Returns a
+    /// sentence if the invariant is broken; else an empty string.
     [[nodiscard]] std::string validate() const;
 
-    /// Internal state. It may change with any version.
+    /// Internal data. It may change with any version.
     [[nodiscard]] detail::Sweeping<Scalar>& sweeping() noexcept { return sweeping_; }
 
 private:
@@ -122,7 +124,7 @@ std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Moti
         add(ofAll);
         return least;
     }
-    // Parts have about the box's size. A path over 64 sizes long has larger parts.
+    // A part is about as long as the box. If the path is over 64 times as long, parts are longer.
     constexpr double mostParts = 64;
     const auto size = static_cast<double>(way.box.sizes().maxCoeff());
     const auto distance = static_cast<double>(way.displacement.cwiseAbs().maxCoeff());
@@ -141,7 +143,7 @@ QueryCost Sweeps<Scalar>::visit(const Region& region, Collector& collector) cons
     CollectIf standing(collector, stands);
     QueryCost cost = grid_.visit(region, standing);
     const detail::QueryScope scope(&grid_.store(), detail::QueryScope::Changes::allowed);
-    // By index: the collector may change the sweeps. Sweeps that begin meanwhile are not searched.
+    // By index: the collector may change the sweeps. Skips sweeps that begin during this loop.
     const std::vector<Motion>& motions = sweeping_.motions.all;
     const std::size_t count = motions.size();
     for (std::size_t i = 0; i < count && collector.limit() >= 0; ++i) {

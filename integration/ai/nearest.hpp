@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the proxies nearest to a point, by the centres of their boxes.
+// Finds the proxies nearest to a point, measured to the centres of their boxes.
 //
 // Threads   Call from any thread while no thread changes the grid.
-// Bad data  Finds nothing if the point is not finite, or the distance is negative or NaN. Never finds proxies without
-//           a position (position_region.hpp).
+// Bad data  Finds nothing if `point` is not finite, or `maximalDistance` is negative or NaN. Never finds proxies
+//           without a position (position_region.hpp).
 
 #include <broadphase/collectors.hpp>
 #include <broadphase/grid.hpp>
@@ -19,11 +19,11 @@
 
 namespace hashphase {
 
-/// Finds the `count` accepted proxies nearest to `point` [m], at most `maximalDistance` [m] away (may be infinite).
-/// Replaces `nearest`, sorted from near to far; keys are squared distances [m^2]. Of equal keys, the smallest id
-/// comes first. Leaves out `self`, usually the asking proxy. May call the filter several times for a proxy. Returns
-/// the cost. Cost: queries of balls that double in radius: at even density, a few balls with about `count` proxies.
-/// At most three reads of the grid, and one query per doubling.
+/// Finds the `count` proxies nearest to `point` [m] that the filter accepts, at most `maximalDistance` [m] away (may
+/// be infinite). Replaces `nearest`, sorted from near to far. Keys are squared distances [m^2]; equal keys are sorted
+/// by id. Never finds `self`, usually the proxy that makes the query. May call the filter several times for a proxy.
+/// Returns the cost. Cost: queries of balls. Each query doubles the radius: at even density, a few balls with about
+/// `count` proxies. At most three passes over the grid, and one query for each doubling.
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost findNearest(const Grid<Scalar>& grid,
                                           const Vector3<std::type_identity_t<Scalar>>& point,

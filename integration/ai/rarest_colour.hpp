@@ -4,12 +4,13 @@
 // The paper's AI routine: every agent takes the rarest colour around it. Source: Hastings, Mesit and Guha,
 // "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing".
 //
-// Frame     update() reads all colours before it changes any. The order of agents does not matter.
-// Threads   update() is a query of the grid. No other thread may use this object meanwhile. Filters run on all
-//           threads of `parallelFor`.
+// Frame     Updates read all colours before they change any, so the order of agents does not matter.
+// Threads   Updates query the grid. During an update, no other thread may use this object. Filters run on all threads
+//           of `parallelFor`.
 // Units     as the grid, usually metres
-// Bad data  Agents without a position (position_region.hpp) keep their colours. With a negative or NaN radius, agents
-//           have no neighbours. An agent whose colour is colourCount or more is not counted, but gets a colour.
+// Bad data  Agents without a position (position_region.hpp) keep their colours. If the radius is negative or NaN,
+//           agents have no neighbours. An agent whose colour is colourCount or more is not counted, but gets a new
+//           colour.
 
 #include <broadphase/radius_search.hpp>
 #include <integration/ai/export.hpp>
@@ -20,22 +21,22 @@
 
 namespace hashphase {
 
-/// Changes colours. Reuses its memory: a frame that needs no more than before allocates nothing.
+/// Changes the colours of agents. Reuses its memory: allocates only if a frame needs more than before.
 template <class Scalar>
 class HASHPHASE_AI_TEMPLATE_EXPORT RarestColour {
 public:
-    /// Agents are the proxies that `filter` accepts. Gives every agent the colour from 0 to colourCount - 1 that the
-    /// fewest other agents within `radius` [m] have; of equally rare colours the lowest. `colours` is indexed by
-    /// ProxyId::index. Calls `changes` once per agent: a refused agent keeps its colour, but is counted. Returns the
-    /// cost of counting. Asserted: colourCount is 1 to RadiusSearch::kMostGroups, and each agent has an element in
-    /// `colours`. Cost: as RadiusSearch::countGroups().
+    /// Agents are the proxies that `filter` accepts. Gives every agent the colour, from 0 to colourCount - 1, that
+    /// the fewest other agents within `radius` [m] have. If colours are equally rare, takes the lowest. `colours` is
+    /// indexed by ProxyId::index. Calls `changes` once for each agent. Refused agents keep their colours, but
+    /// neighbours count them. Returns the cost of counting. Asserted: colourCount is 1 to RadiusSearch::kMostGroups,
+    /// and each agent has an element in `colours`. Cost: as RadiusSearch::countGroups().
     QueryCost update(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
                      ProxyFilter changes = acceptAll, ParallelFor parallelFor = serialFor);
 
     /// As update(), but changes only the colours of `agents`. Asserted: `agents` are in the grid, and `colours` has
-    /// at least Grid::indexLimit() elements. Cost: a query per agent (Grid::visitEach()), cheaper than update() for
-    /// few agents.
+    /// at least Grid::indexLimit() elements. Cost: a query for each agent (Grid::visitEach()): for few agents,
+    /// cheaper than update().
     QueryCost updateSome(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                          std::span<std::uint32_t> colours, std::span<const ProxyId> agents,
                          ProxyFilter filter = acceptAll, ParallelFor parallelFor = serialFor);
@@ -49,8 +50,8 @@ public:
 
 private:
     RadiusSearch<Scalar> search_;
-    std::vector<std::uint32_t> counts_;  // by agent, then by colour
-    std::vector<std::uint32_t> rarest_;  // by agent of updateSome()
+    std::vector<std::uint32_t> counts_;  // index: agent * colourCount + colour
+    std::vector<std::uint32_t> rarest_;  // for each agent of updateSome()
 };
 
 extern template class RarestColour<float>;

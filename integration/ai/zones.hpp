@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Zones of interest: volumes that report which proxies enter, stay and leave (paper, "areas of interest"). Index your
-// own data about zones by ZoneId::index.
+// Zones of interest: volumes that report which proxies enter, stay and leave (paper, "areas of interest"). To keep
+// data for zones, use ZoneId::index as array index.
 //
-// Frame      Move bodies and zones, then call update() once. A proxy that is in a zone, or has left it, is in exactly
-//            one event of that zone.
-// Grid       Zones are not in the grid. Always pass the same grid, or call forgetOccupants() before you pass another.
-//            After Grid::shiftOrigin(), set() every zone to its new place before the next update(), so occupants
-//            stay.
-// Rollback   A copy is a snapshot, occupants included. To roll back, assign it, and call GridSnapshot::restore(): the
-//            next update() repeats the events. Earlier spans are invalid.
+// Frame      Move bodies and zones, then call update() once. In each zone, update() reports one event for each proxy
+//            that is inside or has just left.
+// Grid       Zones are not in the grid. Before you pass another grid, call forgetOccupants(). After
+//            Grid::shiftOrigin(), call set() for every zone, with its new position, before the next update().
+//            Otherwise occupants leave.
+// Rollback   A copy is a snapshot, occupants included. To roll back, assign the copy, and call
+//            GridSnapshot::restore(). The next update() repeats the events. Earlier spans are invalid.
 // Threads    Const functions may run on several threads at once. During other calls, no other thread may use this
 //            object. update() is a query of the grid.
-// Callbacks  run on all threads of `parallelFor`. Asserted: they do not change or update zones.
-// Failure    If memory runs out or a callback throws, no zone changes. The next update() reports the missed events.
+// Callbacks  Run on all threads of `parallelFor`. Asserted: callbacks do not change or update zones.
+// Failure    If memory runs out or a callback throws, occupants do not change. The next update() reports the missed
+//            events.
 // Bad data   A zone with a NaN or a negative radius contains no proxy. For inverted boxes, see overlaps().
-// Misuse     Asserted: ids are valid. An id of another Zones object may go unnoticed.
+// Misuse     Asserted: ids are valid. An id of another Zones object is not always detected.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/grid.hpp>
@@ -50,7 +51,7 @@ enum class Presence : std::uint8_t {
     box,       ///< any part of its box
 };
 
-/// A closed volume. A ConvexRegion with Containment::inside needs the whole box inside.
+/// A closed volume: includes its surface. In a ConvexRegion with Containment::inside, the whole box must be inside.
 template <class Scalar>
 struct Zone {
     std::variant<BoxRegion<Scalar>, SphereRegion<Scalar>, ConvexRegion<Scalar>> shape;
@@ -65,11 +66,11 @@ struct ZoneEvent {
     friend constexpr auto operator<=>(const ZoneEvent&, const ZoneEvent&) = default;
 };
 
-/// The events between two updates. Lists are sorted by zone, then by proxy.
+/// The events of an update(). Lists are sorted by zone, then by proxy.
 struct ZoneEvents {
     std::span<const ZoneEvent> entered;
     std::span<const ZoneEvent> stayed;
-    /// Includes removed proxies and removed zones, under their old ids.
+    /// Includes removed proxies, and the occupants of removed zones, with their old ids.
     std::span<const ZoneEvent> left;
 };
 
@@ -88,19 +89,19 @@ using ZoneChoice = FunctionRef<bool(ZoneId)>;
     return true;
 }
 
-/// Watches zones. Reuses its memory: a frame that needs no more than before allocates nothing.
+/// Watches zones, and reports events. Reuses its memory: allocates only if a frame needs more than before.
 template <class Scalar>
 class HASHPHASE_AI_TEMPLATE_EXPORT Zones {
 public:
     // --- Zones -----------------------------------------------------------------------------------
 
-    /// Adds a zone, without occupants until the next update(). Returns its id. Cost: O(1) amortised.
+    /// Adds a zone. Until the next update(), the zone has no occupants. Returns its id. Cost: O(1) amortised.
     [[nodiscard]] ZoneId add(const Zone<Scalar>& zone);
 
-    /// Moves, resizes or reshapes a zone. The next update() uses the new shape. Cost: O(1).
+    /// Replaces the volume of a zone. The next update() uses the new volume. Cost: O(1).
     void set(ZoneId id, const Zone<Scalar>& zone);
 
-    /// Removes a zone. Its id is never valid again. The next update() reports its occupants as left. Cost:
+    /// Removes a zone. Its id is never valid again. The next update() reports that its occupants left. Cost:
     /// O(occupants).
     void remove(ZoneId id);
 
@@ -108,15 +109,15 @@ public:
     [[nodiscard]] const Zone<Scalar>& zone(ZoneId id) const;
     [[nodiscard]] std::size_t size() const noexcept { return slots_.size() - freeSlots_.size(); }
 
-    /// Forgets the occupants of all zones, without events. Call it before you pass another grid.
+    /// Removes the occupants of all zones, but reports no events. Call it before you pass another grid.
     void forgetOccupants() noexcept;
 
     // --- Frame -----------------------------------------------------------------------------------
 
-    /// Finds the proxies in each zone. Returns the changes since the last update(), valid until the next update().
+    /// Finds the proxies in each zone. Returns the events since the last update(), valid until the next update().
     /// Calls `due` once for each zone. If `due` refuses a zone, the zone keeps its occupants, even removed proxies,
-    /// and has no events. The zone's next search reports all changes since. Cost: one Grid::visit() of each due zone,
-    /// and O(occupants).
+    /// and has no events. The next search of the zone reports the changes since its last search. Cost: one
+    /// Grid::visit() of each searched zone, and O(occupants).
     ZoneEvents update(const Grid<Scalar>& grid, ZoneFilter filter = acceptAllInZones,
                       ZoneChoice due = allZones, ParallelFor parallelFor = serialFor);
 
@@ -125,11 +126,12 @@ public:
     /// The proxies that were in the zone at its last search, sorted by id. Valid until the next update().
     [[nodiscard]] std::span<const ProxyId> occupants(ZoneId id) const;
 
-    /// Finds the zones whose present shapes contain the point [m]. Replaces `found`, sorted by id; empty if the point
-    /// is not finite. Cost: O(zones).
+    /// Finds the zones whose current shapes contain the point [m]. Replaces `found`, sorted by id. Finds nothing if
+    /// the point is not finite. Cost: O(zones).
     void zonesAt(const Vector3<Scalar>& point, std::vector<ZoneId>& found) const;
 
-    /// Cost of the last update(). Its hits are boxes that touch zones, before presence and filter decide.
+    /// Cost of the last update(). Its `hits` are boxes that touch zones, including boxes that Presence or the filter
+    /// excludes.
     [[nodiscard]] const QueryCost& lastCost() const noexcept { return cost_; }
 
     /// Bytes held, capacity included. Cost: O(zones).
@@ -139,10 +141,10 @@ private:
     struct Slot {
         Zone<Scalar> zone;
         std::uint32_t generation = 0;    // odd while the slot has a zone
-        std::vector<ProxyId> occupants;  // of the last update
-        std::vector<ProxyId> found;      // by the update under way
+        std::vector<ProxyId> occupants;  // of the last search
+        std::vector<ProxyId> found;      // found by update()
         QueryCost cost;
-        bool isDue = false;  // the update under way searches the zone
+        bool isDue = false;  // the current update() searches the zone
     };
 
     [[nodiscard]] const Slot& slot(ZoneId id) const;

@@ -3,8 +3,8 @@
 
 // Runs the loops of the broadphase on the threads of Bullet's task scheduler: see btSetTaskScheduler().
 //
-// Scheduler Without a scheduler, loops run on the caller's thread. A Bullet built without BT_THREADSAFE has no
-//           scheduler, but takes your own.
+// Scheduler If no scheduler is set, loops run on the caller's thread. A Bullet built without BT_THREADSAFE has no
+//           scheduler, but you can set your own.
 // Lifetime  Keep the result of btCreateDefaultTaskScheduler() until the program ends. Its destructor may overwrite
 //           memory of the program (a bug in btThreadSupportPosix::waitForResponse()).
 
@@ -21,8 +21,8 @@
 
 namespace hashphase {
 
-/// A ParallelFor: config.parallelFor = hashphase::bulletFor. If the loop throws, for example std::bad_alloc, waits
-/// for all threads, and rethrows the first exception on the caller's thread.
+/// A ParallelFor: set config.parallelFor = hashphase::bulletFor. If the loop throws, for example std::bad_alloc,
+/// waits for all threads, and rethrows the first exception on the caller's thread.
 inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
     struct Body : btIParallelForBody {
         const LoopBody& loop;
@@ -39,11 +39,11 @@ inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
         return;
     }
     btITaskScheduler* const scheduler = btGetTaskScheduler();
-    if (scheduler == nullptr || count > kMost) {  // count is too large for Bullet
+    if (scheduler == nullptr || count > kMost) {  // Bullet counts with int
         body(0, count);
     } else {
         detail::FirstException exception;
-        // Not btParallelFor(), which needs a Bullet with threads.
+        // btParallelFor() would use threads only in a Bullet with BT_THREADSAFE.
         scheduler->parallelFor(0, static_cast<int>(count),
                                static_cast<int>(std::clamp<std::size_t>(grain, 1, kMost)),
                                Body(body, exception));

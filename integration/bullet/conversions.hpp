@@ -14,24 +14,24 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Returns the three coordinates, without Bullet's fourth component.
+/// Returns the vector without Bullet's fourth component.
 [[nodiscard]] inline Vector3<btScalar> toEigen(const btVector3& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-/// Returns the three coordinates; Bullet's fourth component is 0.
+/// Returns the vector; Bullet's fourth component is 0.
 [[nodiscard]] inline btVector3 toBullet(const Vector3<btScalar>& v) {
     return {v.x(), v.y(), v.z()};
 }
 
 using hashphase::isSameBits;
 
-/// Returns whether all three coordinates have equal bits: -0 differs from 0, and a NaN equals itself.
+/// Returns whether all three coordinates of `a` and `b` have equal bits: -0 and 0 differ; a NaN equals itself.
 [[nodiscard]] inline bool isSameBits(const btVector3& a, const btVector3& b) {
     return isSameBits(a.x(), b.x()) && isSameBits(a.y(), b.y()) && isSameBits(a.z(), b.z());
 }
 
-/// Returns the box from `min` to `max`; it is inverted if min > max.
+/// Returns the box from `min` to `max`, inverted if min > max on an axis.
 [[nodiscard]] inline Aabb<btScalar> toAabb(const btVector3& min, const btVector3& max) {
     return {toEigen(min), toEigen(max)};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Bullet's groups and masks for queries of the grid.
+// A filter for queries by Bullet's groups and masks.
 
 #include <broadphase/proxy_id.hpp>
 #include <integration/bullet/precision.hpp>
@@ -11,21 +11,21 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// A ProxyFilter by Bullet's rule. Accepts a proxy if its group is in the asker's mask, and the asker's group in the
-/// proxy's mask:
+/// A ProxyFilter by Bullet's rule. Accepts a proxy if its group is in the mask of the asker (which makes the query),
+/// and the asker's group is in the proxy's mask:
 ///
 ///     const GroupFilter enemies(broadphase, {.mask = kEnemyGroup});
 ///     const Picked<btScalar> picked = pickNearest(broadphase.grid(), ray, enemies);
 ///
-/// Sees changes of a proxy's group and mask at once. The broadphase must outlive the filter. Cost: O(1). Threads: any
-/// number at the same time.
+/// Reads the proxy's present group and mask. The broadphase must outlive the filter. Cost: O(1). Threads: any number
+/// at once.
 class GroupFilter {
 public:
     /// The asker's group and mask, like m_collisionFilterGroup and m_collisionFilterMask of a ray callback. By
-    /// default, the asker has all groups and wants all groups.
+    /// default, the asker is in all groups and accepts all groups.
     struct Asker {
-        int group = btBroadphaseProxy::AllFilter;  ///< groups of the asker
-        int mask = btBroadphaseProxy::AllFilter;   ///< groups that the asker wants
+        int group = btBroadphaseProxy::AllFilter;  ///< groups that the asker is in
+        int mask = btBroadphaseProxy::AllFilter;   ///< groups that the asker accepts
     };
 
     GroupFilter(const SpatialHashBroadphase& broadphase, const Asker& asker) noexcept

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Moves the origin of a whole Bullet world. Far from the origin, coordinates are coarse: bodies jitter and joints
-// drift. Shift the origin from time to time to keep it near the player. Contacts stay, and no body wakes up.
+// Moves the origin of a whole Bullet world. Far from the origin, coordinates have large rounding errors: bodies
+// jitter and joints drift. Shift the origin from time to time to keep it near the player. Contacts stay, and no body
+// wakes up.
 //
 // A frame  Call shiftWorldOrigin() between two steps.
 // Shift    Shift towards the bodies, by multiples of a power of two such as 1024 m. In that case, their coordinates
 //          are not rounded, and relative positions keep all bits.
 // Threads  No other thread may use the world during the call.
-// Memory   Throws std::bad_alloc when memory runs out, and shifts nothing.
+// Memory   When memory runs out, throws std::bad_alloc and shifts nothing.
 // Misuse   Asserted: the world uses this broadphase, the shift is finite, and there are no soft bodies or
-//          multibodies, which cannot be shifted. Otherwise returns false and shifts nothing.
-// RTTI     The call for a btCollisionWorld needs RTTI, to see whether that world is a btDynamicsWorld. Without RTTI
-//          (-fno-rtti, MSVC), that world must have no rigid bodies. Asserted, as above.
+//          multibodies, which cannot be shifted. If a condition is broken, returns false and shifts nothing.
+// RTTI     The overload for btCollisionWorld needs RTTI, to see whether that world is a btDynamicsWorld. Without RTTI
+//          (-fno-rtti, MSVC), that world must have no rigid bodies (asserted, as above).
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -25,9 +26,9 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Moves the world's origin to `shift` [m]. Subtracts `shift` from the transforms and interpolation transforms of
 /// collision objects, from motion states, contact points, joints between a body and the world, and the broadphase's
-/// boxes. Velocities, sleep, contacts and pairs stay. Reads and sets each motion state, even if its body rests. Shift
-/// everything else yourself: bodies outside the world, zones, cameras, terrains.
-/// Returns whether the world was shifted; if false, nothing has changed. Cost: O(objects + contacts + joints), and
+/// boxes. Velocities, sleep states, contacts and pairs do not change. Reads and sets each motion state, even if its
+/// body rests. Shift everything else yourself: bodies outside the world, zones, cameras, terrains.
+/// Returns whether the world was shifted. If false, nothing has changed. Cost: O(objects + contacts + joints), plus
 /// SpatialHashBroadphase::shiftOrigin().
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btDynamicsWorld& world,
                                                             SpatialHashBroadphase& broadphase,

@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A pair cache for Bullet that removes a body in time proportional to the body's pairs. Bullet's cache scans all
-// pairs twice. A PairCache works under any broadphase and in any world:
+// A pair cache for Bullet. It removes a body in time proportional to the body's pairs; Bullet's cache scans all pairs
+// twice. It works under any broadphase:
 //
 //     hashphase::PairCache pairCache;
 //     btDbvtBroadphase broadphase(&pairCache);
 //
-// Threads   Const members may run on several threads at once. During other calls, no other thread may use the cache.
-// Pointers  Pairs move in memory when a pair is added or removed, and in releaseUnusedMemory(). In canonical order,
-//           they also move when the whole array is read. Do not resize or reorder the array.
-// Callbacks Ghost callbacks, callbacks of processAllOverlappingPairs() and destructors of freed algorithms run after
-//           the change that caused them, and may change the cache. The filter must not change the cache.
-// Removal   Pairs that the program removes return in the next calculation of a SpatialHashBroadphase, unless the
-//           filter refuses them. In canonical order, their algorithms are freed when the whole array is next read, or
-//           when the pairs of a proxy are removed or cleaned. Otherwise they are freed at once.
-// Memory    Throws std::bad_alloc when memory runs out. In that case, a single call has changed nothing; a batch has
-//           removed some or all of its pairs, and added none. Removing the pairs of one proxy still works, by a scan
-//           of all pairs. Bullet's own arrays do not report a lack of memory.
-// NULL      A NULL dispatcher frees no algorithms, as in Bullet. Clients may be NULL.
-// Misuse    Asserted: a pair has two different proxies, unique ids of live proxies differ and are not negative, and
+// Threads   Several threads may call const members at once. During other calls, no other thread may use the cache.
+// Pointers  Pairs move in memory when a pair is added or removed, and in releaseUnusedMemory(). With
+//           PairOrder::canonical, pairs also move when the whole array is read. Do not resize or reorder the array.
+// Callbacks The ghost callback and destructors of freed algorithms run after the change that caused them. They may
+//           change the cache, and so may the callback of processAllOverlappingPairs(). The filter must not change the
+//           cache.
+// Removal   If your program removes a pair, the next calculateOverlappingPairs() of a SpatialHashBroadphase adds it
+//           again, unless its proxies have separated or the filter refuses it. In canonical order,
+//           removeOverlappingPair() and update() free algorithms only when the whole array is next read, or the pairs
+//           of a proxy are removed or cleaned. Other calls free them at once.
+// Memory    Throws std::bad_alloc when memory runs out. In that case, a call for one pair has changed nothing. A call
+//           for many pairs has removed some or all of its pairs, and added none. Removing one proxy's pairs always
+//           works; without memory, it scans all pairs. Bullet's own arrays do not report that memory ran out.
+// NULL      If the dispatcher is NULL, no algorithms are freed, as in Bullet. Clients may be NULL.
+// Misuse    Asserted: the two proxies of a pair differ, unique ids of live proxies differ and are not negative, and
 //           the filter does not change the cache.
 
 #include <broadphase/core/flat_set.hpp>
@@ -50,21 +52,22 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// The order of the pairs in the array.
 enum class PairOrder {
-    /// New pairs go to the end. The last pair takes the place of a removed pair, as in Bullet's cache except in
-    /// batches. Equal calls on an empty cache give an equal order. Setting boxes back to an earlier frame restores
-    /// the pairs, but not their order. Cost: none.
+    /// New pairs are appended. The last pair moves to the place of a removed pair, as in Bullet's cache (for batches,
+    /// see update()). Equal calls on an empty cache give an equal order. Setting boxes back to an earlier frame
+    /// restores the pairs, but not their order. Cost: none.
     arrival,
-    /// Sorted ascending by the keys of both proxies, whenever the whole array is read. Equal sets of pairs have an
-    /// equal order under any broadphase. For programs that set boxes back to an earlier frame; WorldSnapshot does not
-    /// need this order. Algorithms are freed in this order too, so manifolds and whole trajectories are equal under
-    /// all exact broadphases. Cost: a sort after the set of pairs has changed.
+    /// When the whole array is read, pairs are sorted ascending by the keys of both proxies. Equal sets of pairs have
+    /// an equal order under any broadphase. For programs that set boxes back to an earlier frame; WorldSnapshot does
+    /// not need this order. Algorithms are freed in this order too. As a result, all exact broadphases give equal
+    /// manifolds and trajectories. Cost: O(n log n) for n pairs, after a change.
     canonical,
 };
 
-/// Returns a proxy's sort key; m_uniqueId decides between equal keys. It must not change while the proxy has pairs.
+/// Returns a proxy's sort key. If keys are equal, m_uniqueId decides. The key must not change while the proxy has
+/// pairs.
 using ProxyKey = int (*)(const btBroadphaseProxy&);
 
-/// Two proxies with their unique ids, so that a batch need not read the proxies.
+/// Two proxies, and copies of their unique ids, so that a batch need not read the proxies.
 class BulletProxyPair {
 public:
     BulletProxyPair() noexcept = default;
@@ -72,21 +75,21 @@ public:
     BulletProxyPair(btBroadphaseProxy& a, btBroadphaseProxy& b) noexcept
         : BulletProxyPair(a, a.m_uniqueId, b, b.m_uniqueId) {}
 
-    /// The ids must be these proxies' unique ids (not checked).
+    /// `idOfA` must be a.m_uniqueId, and `idOfB` b.m_uniqueId (not checked).
     BulletProxyPair(btBroadphaseProxy& a, int idOfA, btBroadphaseProxy& b, int idOfB) noexcept
         : lower_(idOfA < idOfB ? &a : &b),
           upper_(idOfA < idOfB ? &b : &a),
           ids_(std::uint64_t{static_cast<std::uint32_t>(idOfA < idOfB ? idOfA : idOfB)} << 32 |
                static_cast<std::uint32_t>(idOfA < idOfB ? idOfB : idOfA)) {}
 
-    /// Returns the proxy with the lower unique id; upper() returns the other.
+    /// lower() returns the proxy with the lower unique id, upper() the other proxy.
     [[nodiscard]] btBroadphaseProxy* lower() const noexcept { return lower_; }
     [[nodiscard]] btBroadphaseProxy* upper() const noexcept { return upper_; }
 
     /// Returns both unique ids; the lower id is in the upper 32 bits.
     [[nodiscard]] std::uint64_t ids() const noexcept { return ids_; }
 
-    /// Returns false if the unique id of a proxy has changed, as when the proxy is destroyed.
+    /// Returns false if the unique id of either proxy has changed, for example because the proxy was destroyed.
     [[nodiscard]] bool isUpToDate() const noexcept {
         return static_cast<std::uint32_t>(lower_->m_uniqueId) == ids_ >> 32 &&
                static_cast<std::uint32_t>(upper_->m_uniqueId) == (ids_ & 0xffffffffU);
@@ -103,8 +106,8 @@ using ProxyCouple [[deprecated("BulletProxyPair")]] = BulletProxyPair;
 /// A btOverlappingPairCache with fast removal.
 class HASHPHASE_BULLET_EXPORT PairCache final : public btOverlappingPairCache {
 public:
-    /// m_pProxy0 of a pair is the proxy with the lower key: by default the lower unique id, as in Bullet. Pass
-    /// another key for broadphases that reuse unique ids. Asserted: `key` is not null.
+    /// In each pair, m_pProxy0 is the proxy with the lower key: by default the lower unique id, as in Bullet. If the
+    /// broadphase reuses unique ids, pass another key. Asserted: `key` is not null.
     explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId)
         : order_(order), key_(key) {
         HASHPHASE_ASSERT(key != nullptr,
@@ -115,28 +118,29 @@ public:
     PairCache(const PairCache&) = delete;
     PairCache& operator=(const PairCache&) = delete;
 
-    /// The default key. Not inline, because the cache compares its address.
+    /// The default key function. Not inline, because the cache compares its address.
     static int uniqueId(const btBroadphaseProxy& proxy);
 
-    /// The most pairs that Bullet's array can hold.
+    /// Maximum number of pairs in Bullet's array.
     static constexpr std::size_t kMostPairs = std::size_t{1} << 30;
 
     // --- One pair --------------------------------------------------------------------------------
 
     /// Returns the pair, and adds it if it is missing. Returns NULL if the filter refuses it. Calls the ghost
-    /// callback for a new pair. Throws std::length_error beyond kMostPairs, and changes nothing. Cost: O(1).
+    /// callback for a new pair. If the cache already has kMostPairs pairs, throws std::length_error and changes
+    /// nothing. Cost: O(1).
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
                                          btBroadphaseProxy* proxy1) override;
 
-    /// As addOverlappingPair(), without asking the filter.
+    /// As addOverlappingPair(), but does not ask the filter.
     btBroadphasePair* addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1);
 
-    /// Removes the pair, frees its algorithm and calls the ghost callback. Returns the pair's m_internalInfo1; NULL
-    /// without such a pair. Cost: O(1).
+    /// Removes the pair, frees its algorithm (see Removal) and calls the ghost callback. Returns the pair's
+    /// m_internalInfo1, or NULL if the pair is missing. Cost: O(1).
     void* removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
                                 btDispatcher* dispatcher) override;
 
-    /// Returns the pair; NULL if it is missing. Does not ask the filter. Cost: O(1).
+    /// Returns the pair, or NULL if it is missing. Does not ask the filter. Cost: O(1).
     btBroadphasePair* findPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) override;
 
     /// Frees the pair's algorithm and keeps the pair.
@@ -144,13 +148,13 @@ public:
 
     // --- Many pairs ------------------------------------------------------------------------------
 
-    /// Removes the pairs `died`, then adds the pairs `born` without asking the filter. Skips died pairs that are
-    /// missing, and born pairs that are present. In order of arrival, the first born pairs take the places of the
-    /// first died pairs. Further born pairs go to the end; if fewer are born, pairs from the end fill the gaps. If a
-    /// ghost callback is set, or within processAllOverlappingPairs(), works exactly like single calls. Uses
-    /// `parallelFor` for thousands of pairs, with an equal result. Callbacks run on the caller's thread. Throws
-    /// std::length_error, and changes nothing, if present and born pairs exceed kMostPairs. Cost: O(1) for each pair;
-    /// single calls cost three times as much.
+    /// Removes the pairs of `died`, then adds the pairs of `born` without asking the filter. Skips pairs of `died`
+    /// that are missing, and pairs of `born` that are present. In order of arrival, the first added pairs take the
+    /// places of the first removed pairs. Further added pairs go to the end; if fewer are added, pairs from the end
+    /// fill the gaps. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like single
+    /// calls. Runs on the threads of `parallelFor` for thousands of pairs, with an equal result. Callbacks run on the
+    /// caller's thread. If the number of present pairs plus born.size() exceeds kMostPairs, throws std::length_error
+    /// and changes nothing. Cost: O(1) for each pair; single calls cost three times as much.
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                 btDispatcher* dispatcher, ParallelFor parallelFor);
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
@@ -158,66 +162,66 @@ public:
 
     // --- The pairs of one proxy ------------------------------------------------------------------
 
-    /// Removes the proxy's pairs one by one, in canonical order or in Bullet's order. Frees their algorithms at once.
-    /// Cost: the proxy's pairs, and amortised O(1) for each pair added since the last such call. After a sort or a
-    /// large update(), all pairs count as added.
+    /// Removes the proxy's pairs one by one, in canonical order or in the order of Bullet's cache. Frees their
+    /// algorithms at once. Cost: proportional to the proxy's pairs, plus amortised O(1) for each pair added since the
+    /// last such call. After a sort or a large update(), all pairs count as added.
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
-    /// Frees the algorithms of the proxy's pairs and keeps the pairs. Order and cost: as for removal. Ghost objects
-    /// keep their own algorithms.
+    /// Frees the algorithms of the proxy's pairs and keeps the pairs. Order and cost: as
+    /// removeOverlappingPairsContainingProxy(). Ghost objects keep their own algorithms.
     void cleanProxyFromPairs(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
-    /// As cleanProxyFromPairs(). Also calls the ghost callback as if each pair had been removed and added again, so
-    /// that ghost objects free their algorithms too.
+    /// As cleanProxyFromPairs(). Also calls the ghost callback as if each pair was removed and added again: ghost
+    /// objects free their algorithms too.
     void renewPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     // --- The pairs of many proxies ---------------------------------------------------------------
 
-    /// Removes the pairs of each proxy in turn, and afterwards frees their algorithms. In canonical order, frees them
-    /// in the order of single calls. In order of arrival, frees them in any order, and may order pairs differently
-    /// than single calls. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like
-    /// single calls. Cost: the proxies' pairs, and at most one pass over all pairs.
+    /// Removes the pairs of all these proxies, then frees their algorithms. In canonical order, frees them in the
+    /// order of single calls. In order of arrival, frees them in any order, and may order pairs differently than
+    /// single calls. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like single
+    /// calls. Cost: proportional to the proxies' pairs, plus at most one pass over all pairs.
     void removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                  btDispatcher* dispatcher);
 
     // --- All pairs -------------------------------------------------------------------------------
 
-    /// Calls callback->processOverlap() for every pair, and removes the pairs for which it returns true. The callback
-    /// may add pairs, and is called for them, too. It may remove any pair. If it removes a pair other than its
-    /// argument, this call may skip some pairs. Cost: O(pairs), including added pairs. Does not return while the
+    /// Calls callback->processOverlap() for every pair, and removes the pair if the callback returns true. The
+    /// callback may add pairs, and is called for them, too. It may remove any pair. If it removes a pair other than
+    /// its argument, some pairs may be skipped. Cost: O(pairs), including added pairs. Does not return while the
     /// callback keeps adding pairs.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher) override;
 
-    /// As above. With dispatchInfo.m_deterministicOverlappingPairs, calls the callback by descending unique ids, as
-    /// Bullet's cache does. In that case, pairs that the callback adds wait for the next call.
+    /// As above. If dispatchInfo.m_deterministicOverlappingPairs is true, calls the callback in descending order of
+    /// unique ids, as Bullet's cache does. In that case, skips pairs that the callback adds.
     void processAllOverlappingPairs(btOverlapCallback* callback, btDispatcher* dispatcher,
                                     const btDispatcherInfo& dispatchInfo) override;
 
     [[nodiscard]] int getNumOverlappingPairs() const override { return pairs_.size(); }
 
-    /// Returns the array, in canonical order if chosen. Changes by a callback of processAllOverlappingPairs() are
-    /// sorted in after that call.
+    /// Returns the array. With PairOrder::canonical, sorts it first, except within processAllOverlappingPairs().
     btBroadphasePair* getOverlappingPairArrayPtr() override;
     btBroadphasePairArray& getOverlappingPairArray() override;
 
-    /// Returns the array without sorting it: changes since the last non-const call may be out of order.
+    /// Returns the array without sorting it. With PairOrder::canonical, it may be unsorted after a change of pairs.
     [[nodiscard]] const btBroadphasePair* getOverlappingPairArrayPtr() const override;
 
-    /// Brings the array into canonical order once, with either PairOrder. Unlike Bullet's caches, keeps algorithms
-    /// and calls no ghost callback.
+    /// Sorts the array into canonical order once, with either PairOrder. Unlike Bullet's caches, keeps algorithms and
+    /// calls no ghost callback.
     void sortOverlappingPairs(btDispatcher* dispatcher) override;
 
-    /// Returns false: removal is immediate.
+    /// Returns false: pairs are removed at once.
     bool hasDeferredRemoval() override { return false; }
 
     // --- Callbacks -------------------------------------------------------------------------------
 
-    /// Asks the filter callback. Without a callback, the group of each proxy must be in the mask of the other.
-    /// Returns false for pairs that the broadphase ignores, and between worlds of a WorldsBroadphase.
+    /// Returns false if the broadphase ignores the pair, or if the proxies are in different worlds of a
+    /// WorldsBroadphase. Otherwise asks the filter callback. If no callback is set, returns doGroupsAccept().
     [[nodiscard]] bool needsBroadphaseCollision(btBroadphaseProxy* proxy0,
                                                 btBroadphaseProxy* proxy1) const override;
-    /// As needsBroadphaseCollision(), but does not check for ignored pairs and worlds.
+    /// Asks the filter callback, or, if none is set, checks groups and masks. May accept ignored pairs, and proxies
+    /// of different worlds.
     [[nodiscard]] bool doFiltersAccept(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) const {
         if (filter_ != nullptr) {
             const detail::QueryScope scope(this);
@@ -232,15 +236,15 @@ public:
                (b.m_collisionFilterGroup & a.m_collisionFilterMask) != 0;
     }
     /// Returns the filter callback. If none is set but the broadphase may refuse pairs, returns a callback that
-    /// checks groups and masks. Without a callback, Bullet's casts of fast bodies do not call
+    /// checks groups and masks: if Bullet finds no callback, its casts of fast bodies do not call
     /// needsBroadphaseCollision().
     btOverlapFilterCallback* getOverlapFilterCallback() override;
-    /// Sets the callback; NULL for none.
+    /// Sets the filter callback. NULL removes it.
     void setOverlapFilterCallback(btOverlapFilterCallback* callback) override;
     [[nodiscard]] bool hasFilterCallback() const noexcept { return filter_ != nullptr; }
 
-    /// Sets the callback that is called once for each added and each removed pair; NULL for none. As in Bullet's
-    /// caches, it is not called for present pairs.
+    /// Sets the ghost callback, which is called once for each added and each removed pair. As in Bullet's caches, it
+    /// is not called for existing pairs. NULL removes it.
     void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
         ghosts_ = callback;
     }
@@ -254,49 +258,49 @@ public:
         return static_cast<std::size_t>(pairs_.capacity());
     }
 
-    /// Returns how many pairs the calls that remove or clean pairs of proxies have listed so far.
+    /// Returns the number of pairs listed so far by calls that remove or clean the pairs of proxies.
     [[nodiscard]] std::uint64_t pairsVisited() const noexcept { return pairsVisited_; }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Frees unused memory; pairs move. A SpatialHashBroadphase calls this function by itself. Asserted: not within
-    /// the filter. Cost: O(pairs).
+    /// Frees unused memory; pairs move. A SpatialHashBroadphase calls this function by itself. Asserted: the filter
+    /// is not running. Cost: O(pairs).
     void releaseUnusedMemory() noexcept;
 
-    /// Returns a sentence about the broken invariant; empty if all hold:
-    /// - Every pair is found by the unique ids of its proxies.
+    /// Returns a sentence about a broken invariant; empty if all of these hold:
+    /// - Every pair can be found by the unique ids of its proxies.
     /// - Every pair has the proxy with the lower key first.
-    /// - Every chained pair is once in the chain of each of its proxies.
+    /// - Every chained pair is exactly once in the chain of each of its proxies.
     /// - An array that is marked as sorted is in canonical order.
     [[nodiscard]] std::string validate() const;
 
     // --- For a broadphase ------------------------------------------------------------------------
 
-    /// Who removes a pair: a broadphase must know which pairs others remove.
+    /// Who removes a pair. The broadphase must know of removals by others.
     enum class Remover { broadphase, other };
 
     /// removeOverlappingPairsContainingProxies() on behalf of `remover`.
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
                        Remover remover);
 
-    /// The object that is notified of pairs that others remove; null for none.
+    /// The object that is notified when others remove pairs; null if there is none.
     [[nodiscard]] detail::CacheWatcher* watcher() const noexcept { return watcher_; }
     void setWatcher(detail::CacheWatcher* watcher) noexcept { watcher_ = watcher; }
 
 private:
-    // A pair has an edge in the chain of each proxy: edge 2 * index for the lower unique id, and the next edge for
-    // the other.
+    // An edge in the chain of a proxy. Each chained pair has two: edge 2 * index in the chain of the lower unique id,
+    // and the next edge in the chain of the other.
     struct Link {
         std::uint32_t next;
         std::uint32_t previous;
     };
 
-    // The sort keys of a pair.
+    // The sort keys of a pair, and its index in pairs_.
     struct PairSortKey {
-        std::uint64_t keys;  // of both proxies, in an order-preserving unsigned form
+        std::uint64_t keys;  // keys of both proxies, as unsigned numbers of equal order
         std::uint64_t uniqueIds;
         std::uint32_t index;
-        std::uint32_t rank = 0;  // position of its first proxy in a batch
+        std::uint32_t rank = 0;  // index of its first proxy in a batch
 
         friend bool operator<(const PairSortKey& a, const PairSortKey& b) noexcept {
             return a.keys != b.keys ? a.keys < b.keys : a.uniqueIds < b.uniqueIds;
@@ -398,21 +402,21 @@ private:
     btOverlappingPairCallback* ghosts_ = nullptr;
 
     btBroadphasePairArray pairs_;
-    detail::FlatSet ids_;           // BulletProxyPair::ids(), in the order of pairs_
-    std::vector<Link> links_;       // by edge number
+    detail::FlatSet ids_;           // BulletProxyPair::ids() of each pair in pairs_
+    std::vector<Link> links_;       // indexed by edge
     detail::RunMap firstEdge_;      // unique id -> first edge of the proxy's chain
     std::size_t pairsScanned_ = 0;  // unchained pairs scanned since the last chaining
     std::uint64_t pairsVisited_ = 0;
     bool isSorted_ = true;
-    int processDepth_ = 0;  // nested processAllOverlappingPairs() calls
+    int processDepth_ = 0;  // number of nested processAllOverlappingPairs() calls
 
     std::vector<Retired> retired_;
 
     detail::CacheWatcher* watcher_ = nullptr;
 
-    std::vector<std::uint32_t> places_;        // scratch: vacant or new indices
-    std::unique_ptr<detail::KeyParts> parts_;  // scratch of batches on threads
-    detail::ProxyRanks ranks_;                 // scratch of removals
+    std::vector<std::uint32_t> places_;        // scratch: vacant or new indices of pairs_
+    std::unique_ptr<detail::KeyParts> parts_;  // scratch for batches on several threads
+    detail::ProxyRanks ranks_;                 // scratch for removals
     std::vector<PairSortKey> scratch_;
 };
 

@@ -10,11 +10,12 @@
 //     hashphase::ParallelAabbs<btDiscreteDynamicsWorldMt> world(&dispatcher, &broadphase, solvers, nullptr,
 //                                                               &configuration);
 //
-// Threads   Uses SpatialHashConfig::parallelFor of the broadphase. Without a parallelFor, or with a broadphase of
+// Threads   Uses SpatialHashConfig::parallelFor of the broadphase. If parallelFor is empty, or the broadphase is of
 //           another class, the world works like World.
-// Shapes    getAabb() of shapes runs on several threads at once, even for the same shape. Bullet's shapes allow this.
-// Callbacks All boxes are computed before the first box is set. If a callback of the pair cache changes an object,
-//           its box follows in the next step.
+// Shapes    getAabb() of shapes runs on several threads at the same time, even for one shape. Bullet's shapes allow
+//           this.
+// Callbacks All boxes are computed before the first box is set. If a callback of the pair cache moves an object, its
+//           box is updated in the next step.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -29,18 +30,18 @@
 namespace hashphase {
 namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// The boxes of a world's objects, as btCollisionWorld::updateSingleAabb() computes them.
+/// Computes the boxes of a world's objects, as btCollisionWorld::updateSingleAabb() does.
 class WorldAabbs {
 public:
-    /// As btCollisionWorld::updateAabbs(). Returns false, and does nothing, without a parallelFor in a
-    /// SpatialHashBroadphase.
+    /// As btCollisionWorld::updateAabbs(). If the world has no SpatialHashBroadphase with a parallelFor, returns
+    /// false and does nothing.
     [[nodiscard]] HASHPHASE_BULLET_EXPORT bool update(btCollisionWorld& world);
 
 private:
     void compute(btCollisionWorld& world, int number);
     void dropSkipped(btCollisionWorld& world);
 
-    std::vector<btBroadphaseProxy*> proxies_;  // one for each box that is set
+    std::vector<btBroadphaseProxy*> proxies_;  // the proxy of each box
     std::vector<btVector3> mins_;
     std::vector<btVector3> maxs_;
 };
@@ -49,9 +50,9 @@ private:
 
 inline namespace HASHPHASE_BULLET_NAMESPACE {
 
-/// A world with the constructors and results of World: btCollisionWorld, btDiscreteDynamicsWorld,
+/// A world with the constructors and results of World. World is btCollisionWorld, btDiscreteDynamicsWorld,
 /// btDiscreteDynamicsWorldMt, btSoftRigidDynamicsWorld, btMultiBodyDynamicsWorld, or your own class derived from one
-/// of these. updateAabbs() sets all boxes by one SpatialHashBroadphase::setAabbs().
+/// of these. updateAabbs() sets all boxes with one call of SpatialHashBroadphase::setAabbs().
 template <class World>
 class ParallelAabbs : public World {
     static_assert(std::is_base_of_v<btCollisionWorld, World>,
@@ -63,10 +64,10 @@ class ParallelAabbs : public World {
 public:
     using World::World;
 
-    /// Sets the box of each object as World does; with setForceUpdateAllAabbs(false), only of active objects. Boxes
-    /// include Bullet's contact margin, and with m_useContinuous the predicted path. If a box is too large, Bullet
-    /// removes the object from the simulation, and prints a warning. Cost: a box for each object, and setAabbs().
-    /// Memory: 40 bytes for each object (72 in double precision).
+    /// Sets the box of each object as World does. After setForceUpdateAllAabbs(false), sets only the boxes of active
+    /// objects. Boxes include Bullet's contact margin and, if m_useContinuous is set, the predicted path. If a box is
+    /// too large, Bullet removes the object from the simulation, and prints a warning. Cost: O(objects), plus
+    /// setAabbs(). Memory: 40 bytes for each object (72 in double precision).
     void updateAabbs() override {
         if (!aabbs_.update(*this)) {
             World::updateAabbs();

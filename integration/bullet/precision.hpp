@@ -5,8 +5,8 @@
 //
 //     namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE { ... }
 //
-// so that symbols contain the precision. Mixing precisions is a link error; with Bullet alone, a mix links and fails
-// at run time. Set BT_USE_DOUBLE_PRECISION for the whole program, as for Bullet.
+// so that symbols contain the precision. A program with both precisions does not link; with Bullet alone, it links
+// and fails at run time. Set BT_USE_DOUBLE_PRECISION for the whole program, as for Bullet.
 
 #ifdef BT_USE_DOUBLE_PRECISION
 #define HASHPHASE_BULLET_NAMESPACE f64

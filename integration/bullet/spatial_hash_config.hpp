@@ -24,42 +24,43 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 struct SpatialHashConfig {
     GridConfig grid{};
 
-    /// Ghost objects get their pairs at once, in createProxy() and setAabb(), as Bullet's character controller
-    /// expects. This needs a pair cache with an internal ghost pair callback. (A cache not given as a PairCache
-    /// counts as having one.) An object that is created in a ghost's box, or jumps into it from outside, also pairs
-    /// with the ghost at once. Calls with a dispatcher, such as by a btCollisionWorld, treat every client that may
-    /// have pairs as a btCollisionObject. Set false if clients are of other types.
+    /// createProxy() and setAabb() of a ghost object add its pairs at once, as Bullet's character controller expects.
+    /// This needs a pair cache with an internal ghost pair callback. (A cache not passed as a PairCache counts as
+    /// having one.) An object that is created in a ghost's box, or jumps into it from outside, also pairs with the
+    /// ghost at once. Calls with a dispatcher, such as by a btCollisionWorld, read every client that may have pairs
+    /// as a btCollisionObject. Set false if clients have other types.
     bool eagerGhosts = true;
 
-    /// Proxies of these groups get their pairs at once, too. For code without ghost objects that reads pairs between
-    /// a move and the next step. None by default, because your program defines what a bit means.
+    /// createProxy() and setAabb() of a proxy in these groups add its pairs at once, too. For code without ghost
+    /// objects that reads pairs between a move and the next step. No groups by default, because your program defines
+    /// what a bit means.
     int eagerGroups = 0;
 
-    /// A ParallelFor for setAabbs() and calculateOverlappingPairs(). If empty, they run on the caller's thread.
-    /// Results are equal on any number of threads. See bullet_parallel_for.hpp and tbb_parallel_for.hpp.
+    /// A ParallelFor for setAabbs() and calculateOverlappingPairs(). If empty, both run on the caller's thread.
+    /// Results do not depend on the number of threads. See bullet_parallel_for.hpp and tbb_parallel_for.hpp.
     std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor{};
 
-    /// How to find the objects that a fast rigid body passes in a step; by default not at all. With m_useContinuous,
-    /// Bullet's box of such a body covers start, end and all between. With a sweep, this box makes no pairs. Instead,
-    /// the body pairs exactly with the objects that it touches along the path that Bullet predicts. Queries find the
-    /// body by Bullet's box, extended to the end of the path if m_useContinuous is off. A body sweeps until its next
-    /// setAabb(). After you move a body by hand, set its interpolation transform too. Cost: up to two boxes of each
-    /// moving body's shape.
+    /// How to find the objects that a fast rigid body passes in a step. By default, bodies do not sweep. If
+    /// m_useContinuous is set, Bullet's box of such a body covers start, end and all between. With a sweep, this box
+    /// makes no pairs. Instead, the body pairs exactly with the objects that it touches along the path that Bullet
+    /// predicts. Queries test Bullet's box of the body, extended to the end of the path if m_useContinuous is off. A
+    /// body sweeps until its next setAabb(). If you move a body by hand, set its interpolation transform too. Cost:
+    /// up to two getAabb() calls for each moving body's shape.
     Sweep sweep = Sweep::none;
 
     /// A body is fast if it moves in a step by more than `fastFrom` times the smallest edge of its box. Other bodies
-    /// keep Bullet's box. Valid: 0 or more.
+    /// do not sweep. Valid: 0 or more.
     btScalar fastFrom = 1;
 
     /// Set this to true if your overlap filter callback, or your pair cache other than PairCache, refuses at least
-    /// the pairs that groups and masks refuse. Bullet's own caches do so. In that case, the callback or cache is
-    /// asked only about other pairs. Proxies that groups and masks filter out, for example with a mask of 0, cost
-    /// nothing. If false, the callback or cache decides instead of groups and masks. It is asked about every pair of
-    /// overlapping proxies, and again about a refused pair when either proxy has changed.
+    /// the pairs that groups and masks refuse. Bullet's own caches do. If true, the callback or cache is asked only
+    /// about pairs that groups and masks accept. Proxies that may pair with no proxy, for example with a mask of 0,
+    /// cost nothing. If false, the callback or cache decides instead of groups and masks. It is asked about every
+    /// pair of overlapping proxies, and again about a refused pair when one of its proxies has changed.
     bool filterRefusesMore = false;
 
-    /// Ends a query when process() of its callback returns false. Off by default: Bullet's broadphases ignore the
-    /// return value, and programs return false for other reasons.
+    /// If true, a query ends when process() of its callback returns false. Off by default: Bullet's broadphases
+    /// ignore the return value, and programs return false for other reasons.
     bool stopWhenProcessReturnsFalse = false;
 };
 

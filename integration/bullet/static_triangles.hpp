@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The triangles of Bullet's static shapes, for a Terrain:
+// Reads the triangles of Bullet's static shapes, for a Terrain:
 //
 //     std::vector<Vector3<btScalar>> corners;
 //     const btCollisionShape& shape = *body.getCollisionShape();
@@ -21,15 +21,15 @@
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Appends the triangles of a shape at `transform` to `corners`: three corners for each triangle, in world
-/// coordinates [m]. Triangles come in Bullet's order, not in the mesh's. A shared corner has equal bits in all its
-/// triangles.
+/// coordinates [m]. The order of triangles is Bullet's, not the mesh's. If triangles share a corner, it has equal
+/// bits in all of them.
 ///
 /// Shapes: btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btHeightfieldTerrainShape, any other btConcaveShape
 /// that lists its triangles, and compounds of these shapes.
-/// Returns an empty string, or a sentence about the fault. After a fault, nothing is appended. Faults: a shape or
+/// Returns an empty string, or a sentence about the fault. If there is a fault, appends nothing. Faults: a shape or
 /// child without triangles (a plane, a convex shape, a heightfield with a negative scaling), compounds nested more
 /// than 64 deep, or a compound that contains itself.
-/// Cost: O(triangles), and the children of compounds. Shapes that occur several times count each time.
+/// Cost: O(triangles + children of compounds). If a shape occurs several times, each occurrence counts.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string appendTriangles(
     const btCollisionShape& shape, const btTransform& transform,
     std::vector<Vector3<btScalar>>& corners);

@@ -21,27 +21,28 @@
 //               gyroscopic forces                            rolls, or swings about a joint
 // friction      all friction 0, one friction direction       bodies slide for ever on any slope; heaps fall apart
 //
-// response needs pairs. sweep and friction need pairs and response. Without these, they are off.
+// response needs pairs. sweep and friction need pairs and response. An effect is off if an effect that it needs is
+// off.
 //
 // A heap of 250 bodies takes 76 % fewer instructions per step without pairs, 58 % without response, 16 % without
 // rotation, 2 % without friction. A resting heap costs twice as much without sleeping. 2000 static bodies cost a
 // fifteenth less without restingBoxes.
 //
 // A frame   Between two steps, call apply() if declarations change, prepare() after adding a body, and release()
-//           before removing a body. After these, call step(), or beforeStep() and stepSimulation().
-// Settings  The destructor gives bodies and the world their own settings back. So does apply() when an effect is
-//           declared again. If the program sets a value meanwhile, this value comes back instead, except
-//           DISABLE_DEACTIVATION while sleeping is off. Angular velocities do not come back.
-// Lifetime  The world, its broadphase, its pair cache and its former overlap filter must outlive the configurator.
-//           Do not wrap the configurator's filter. The configurator changes only objects in the world.
-// Removal   Call release() before you remove or delete an object. Otherwise a removed object keeps the overridden
-//           settings until it is in the world again and apply() or prepare() configures it, or for good if the
-//           configurator is destroyed first. A new object at a deleted object's address is mistaken for the
-//           deleted object if it has one of these settings.
-// Other     Soft bodies and multibodies solve their own contacts: only pairs affects them.
+//           before removing a body. Afterwards, call step(), or beforeStep() and stepSimulation().
+// Settings  When an effect is declared again, apply() restores the former settings of bodies and the world; the
+//           destructor restores all. If your program sets a value while the effect is off, that value is restored
+//           instead, except DISABLE_DEACTIVATION while sleeping is off. Angular velocities are not restored.
+// Lifetime  The world, its broadphase, its pair cache and its former overlap filter must outlive the configurator. No
+//           other filter may call the configurator's filter. The configurator changes only objects in the world.
+// Removal   Call release() before you remove or delete an object. Without this call, a removed object keeps the
+//           overridden settings until it is in the world again and apply() or prepare() configures it. If the
+//           configurator is destroyed first, the object keeps them for ever. A new object at a deleted object's
+//           address is mistaken for the deleted object if it has one of these settings.
+// Other     Soft bodies and multibodies solve their own contacts. Only pairs affects them.
 // Memory    Used only for objects with overridden settings. After a removal without release(), memory is kept until
-//           an object is at that address again. Throws std::bad_alloc when memory runs out; repeat the call. The
-//           next step that does not throw completes the pairs.
+//           an object is at that address again. Throws std::bad_alloc when memory runs out; repeat the call. The next
+//           step that does not throw completes the pairs.
 
 #include <integration/bullet/detail/kept_setting.hpp>
 #include <integration/bullet/export.hpp>
@@ -69,7 +70,7 @@ struct BodyEffects {
 
 /// The declared effects of a world.
 struct WorldEffects {
-    bool motion = true;        ///< affects only WorldConfigurator::step()
+    bool motion = true;        ///< if false, WorldConfigurator::step() moves no body
     bool restingBoxes = true;  ///< each step updates boxes of resting bodies, as in Bullet
     bool pairs = true;
     bool response = true;
@@ -81,17 +82,17 @@ struct WorldEffects {
     /// Restitution of every contact, 0 to 1. If unset, bodies keep their own values.
     std::optional<btScalar> restitution{};
 
-    /// Sweeps each convex body that moves in a step by more than this share of the smallest edge of its shape's
-    /// box. If unset, bodies keep their own CCD thresholds. Up to 0.5, no body passes through a thin wall. Above
-    /// 0.5, an unswept body may move by more than half its width: if its middle gets beyond a thin wall, the wall
-    /// pushes it out on the far side. Cost: two casts per step for each swept body.
+    /// Sweeps each convex body that moves in a step by more than this share of the smallest edge of its shape's box.
+    /// If unset, bodies keep their own CCD thresholds. Up to 0.5, no body passes through a thin wall. Above 0.5, an
+    /// unswept body may move by more than half its width. If its middle gets beyond a thin wall, the wall pushes it
+    /// out on the far side. Cost: two casts per step for each swept body.
     std::optional<btScalar> fastFrom{};
 
     /// Bodies slower than this [m/s] may fall asleep. If unset, bodies keep their own thresholds.
     std::optional<btScalar> slowBelow{};
 
     /// Returns the effects of an object, to switch effects off for single objects. May be empty. Two objects pair
-    /// only if both have `pairs`. The overlap filter also calls it, on the filter's thread.
+    /// only if both have `pairs`. The overlap filter calls this function too, on the thread that asks the filter.
     std::function<BodyEffects(const btCollisionObject&)> effectsOf{};
 };
 
@@ -99,31 +100,32 @@ struct WorldEffects {
 class HASHPHASE_BULLET_EXPORT WorldConfigurator {
 public:
     explicit WorldConfigurator(btDiscreteDynamicsWorld& world);
-    /// Gives back all settings. Pairs that come back need memory. If memory may run out, call apply({}) first.
+    /// Restores all settings. Restored pairs need memory. If memory may run out, call apply({}) first: an exception
+    /// here ends the program.
     ~WorldConfigurator();
     WorldConfigurator(const WorldConfigurator&) = delete;
     WorldConfigurator& operator=(const WorldConfigurator&) = delete;
 
     /// Sets what Bullet computes from the next step on. If this changes how bodies move, all bodies wake. Pairs
-    /// change at once: under a broadphase other than SpatialHashBroadphase, by a new proxy for each object. Cost:
-    /// one pass over all objects, and over contacts and pairs if these may change.
+    /// change at once; under a broadphase other than SpatialHashBroadphase, each object gets a new proxy. Cost: one
+    /// pass over all objects, plus one over contacts and pairs if these may change.
     void apply(const WorldEffects& effects);
     [[nodiscard]] const WorldEffects& effects() const noexcept { return effects_; }
 
-    /// Configures an added object, as apply() does. Asserted: the object is in the world. Cost: O(1).
+    /// Configures an object of the world, as apply() does. Asserted: the object is in the world. Cost: O(1).
     void prepare(btCollisionObject& object);
 
-    /// Gives an object its own settings back, and forgets the object. Call it before you remove or delete the
-    /// object. Cost: O(1).
+    /// Restores an object's own settings, and forgets the object. Call it before you remove or delete the object.
+    /// Cost: O(1).
     void release(btCollisionObject& object);
 
-    /// Returns how many bodies Bullet will sweep in a step of this length [s]. With fastFrom, Bullet sweeps only in
-    /// steps with such bodies. In other steps, a body that becomes fast is swept from the next step on. Call it
-    /// before each step, or never. Cost: one pass over all objects.
+    /// Returns the number of bodies that Bullet will sweep in a step of `timeStep` [s]. If fastFrom is set and there
+    /// are none, switches Bullet's sweeps off for this step. A body that becomes fast during the step is swept from
+    /// the next step on. Call it before each step, or never. Cost: one pass over all objects.
     int beforeStep(btScalar timeStep);
 
-    /// Runs a step of this length [s]. With motion, calls beforeStep() if fastFrom is set, then
-    /// stepSimulation(timeStep, 0). Without motion, only updates pairs and contacts, if pairs are declared.
+    /// Runs a step of `timeStep` [s]. If motion is declared, calls beforeStep() (only if fastFrom is set), then
+    /// stepSimulation(timeStep, 0). If motion is off, only updates pairs and contacts, if pairs are declared.
     void step(btScalar timeStep);
 
     /// Returns the number of objects with overridden settings, including objects removed without release().
@@ -187,8 +189,8 @@ private:
     detail::KeptSetting<int> frictionDirections_;
     std::unordered_map<const btCollisionObject*, KeptBody> kept_;  // overridden objects
     std::uint64_t applyCount_ = 0;
-    bool arePairsOld_ = false;       // until the filter has been asked about all pairs
-    bool areBodiesChanged_ = false;  // until all bodies are awake
+    bool arePairsOld_ = false;       // must ask the filter about all pairs again
+    bool areBodiesChanged_ = false;  // must wake all bodies
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -2,8 +2,8 @@
 #pragma once
 
 // Thousands of small worlds at the same place, in one Bullet world, for training or copies of a level. Objects of
-// different worlds never pair. The broadphase of each world is as fast as a separate one (tests/benchmarks/run --only
-// worlds).
+// different worlds never pair. The broadphase of each world is as fast as a separate broadphase (tests/benchmarks/run
+// --only worlds).
 //
 //     hashphase::WorldsConfig config;
 //     config.worldCount = 300;
@@ -17,10 +17,10 @@
 // One world   Each object is in one world. A shared floor needs a body in each world.
 // All worlds  Queries of this class search all worlds in turn, and so do Bullet's queries, such as
 //             btCollisionWorld::rayTest(). Members that take a proxy work on the proxy's world. rayTests(),
-//             closestRays() and createProxies() exist only in single worlds. Casts of fast bodies search all worlds,
+//             closestRays() and createProxies() exist only for single worlds. Casts of fast bodies search all worlds,
 //             but hit only bodies of the same world.
 // Ids         m_uniqueId is unique over all worlds, ProxyId only within a world.
-// Moving      To move an object to another world, change the value that worldOf reads. Then call
+// Moving      To move an object to another world, first change the value that worldOf reads. Afterwards, call
 //             btCollisionWorld::refreshBroadphaseProxy(), which creates the proxy again.
 // Threads     Any number of threads may query all worlds and single worlds at the same time. During any other call,
 //             no other thread may use the broadphase or one of its worlds.
@@ -47,31 +47,32 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Settings of the worlds.
 struct WorldsConfig {
-    /// Valid: 1 to WorldsBroadphase::kMostWorlds. A world without proxies takes about 4 KB.
+    /// Number of worlds. Valid: 1 to WorldsBroadphase::kMostWorlds. A world without proxies takes about 4 KB.
     int worldCount = 1;
 
-    /// Required. Returns the number of the object's world, from 0 on. createProxy() calls it for every object, and
-    /// so do btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy(). Set the value that it reads before
-    /// these calls: the user index of a new object is -1, an invalid number.
+    /// Required. Returns the number of the object's world, from 0 to worldCount - 1. createProxy() calls this
+    /// function for every object, and so do btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy().
+    /// Before these calls, set the value that it reads: the user index of a new object is -1, an invalid number.
     std::function<int(const btCollisionObject& object)> worldOf{};
 
-    /// Settings of each world. parallelFor updates several worlds at the same time, each on one thread.
+    /// Settings of each world. each.parallelFor updates several worlds at the same time, each on one thread.
     SpatialHashConfig each{};
 };
 
-/// Returns the fault of the configuration in a sentence; empty if it is valid. Also checks WorldsConfig::each.
+/// Returns a sentence about an invalid setting; empty if all settings are valid. Also checks WorldsConfig::each.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string configError(const WorldsConfig& config);
 
-/// A btBroadphaseInterface of many worlds whose objects never pair.
+/// A btBroadphaseInterface with many worlds. Objects of different worlds never pair.
 class HASHPHASE_BULLET_EXPORT WorldsBroadphase final : public btBroadphaseInterface,
                                                        private detail::CacheWatcher {
 public:
     static constexpr int kMostWorlds = 1 << 16;
 
-    /// Makes all worlds, and owns a new PairCache. Throws std::invalid_argument with configError(config).
+    /// Creates all worlds, and owns a new PairCache. If the configuration is invalid, throws std::invalid_argument
+    /// with configError(config).
     explicit WorldsBroadphase(const WorldsConfig& config) : WorldsBroadphase(nullptr, config) {}
 
-    /// Uses `pairCache`, which must outlive the broadphase. With nullptr, owns a new PairCache. With
+    /// Uses `pairCache`, which must outlive the broadphase. If it is nullptr, owns a new PairCache. With
     /// PairOrder::canonical, the pairs of each world have the same order as in a separate broadphase. Asserted: the
     /// cache has no pairs yet.
     WorldsBroadphase(PairCache* pairCache, const WorldsConfig& config);
@@ -84,22 +85,22 @@ public:
 
     [[nodiscard]] int worldCount() const noexcept { return static_cast<int>(worlds_.size()); }
 
-    /// Returns the world with this number. All its members may be called, and affect only this world:
-    /// createProxies() ignores worldOf, and resetPool() resets no other world. Differences from a separate
-    /// SpatialHashBroadphase: all worlds share unique ids and the pair cache, releaseUnusedMemory() does not affect
-    /// the cache, and parallelFor is not set. Asserted: the number is valid.
+    /// Returns the world with this number. All its members may be called, and affect only this world: createProxies()
+    /// ignores worldOf, and resetPool() resets no other world. Differences from a separate SpatialHashBroadphase: all
+    /// worlds share unique ids and the pair cache, releaseUnusedMemory() does not affect the cache, and parallelFor
+    /// is not set. Asserted: the number is valid.
     [[nodiscard]] SpatialHashBroadphase& world(int number);
     [[nodiscard]] const SpatialHashBroadphase& world(int number) const;
 
-    /// Returns the number of the world that the proxy was created in. Cost: O(1).
+    /// Returns the number of the world in which the proxy was created. Cost: O(1).
     [[nodiscard]] int worldOf(const btBroadphaseProxy* proxy) const;
 
     // --- btBroadphaseInterface -------------------------------------------------------------------
 
     /// As SpatialHashBroadphase::createProxy(), in the world that WorldsConfig::worldOf returns for `userPtr`, a
-    /// btCollisionObject. Throws std::invalid_argument, and creates nothing, if `userPtr` is NULL or the number is
-    /// invalid. In that case, remove the object from Bullet's world. If refreshBroadphaseProxy() threw, first call
-    /// object.setBroadphaseHandle(nullptr), because the old proxy is destroyed.
+    /// btCollisionObject. If `userPtr` is NULL or the number is invalid, throws std::invalid_argument and creates
+    /// nothing. After this exception, remove the object from Bullet's world. If refreshBroadphaseProxy() threw, first
+    /// call object.setBroadphaseHandle(nullptr), because the old proxy is destroyed.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -108,8 +109,9 @@ public:
                  btDispatcher* dispatcher) override;
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
-    /// As SpatialHashBroadphase, for each world in turn. With stopWhenProcessReturnsFalse, a callback that returns
-    /// false ends the query for all worlds. Cost: O(worlds), plus a query in each world.
+    /// As rayTest() and aabbTest() of SpatialHashBroadphase, in one world after another. If
+    /// stopWhenProcessReturnsFalse is set, a callback that returns false ends the query for all worlds. Cost:
+    /// O(worlds), plus a query in each world.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
@@ -117,11 +119,11 @@ public:
     void aabbTest(const btVector3& aabbMin, const btVector3& aabbMax,
                   btBroadphaseAabbCallback& callback) override;
 
-    /// Makes the cache's pairs exact, as SpatialHashBroadphase::calculateOverlappingPairs() for each world. Order:
-    /// first removes separated pairs of all worlds, then adds new pairs, world by world. With parallelFor, updates
-    /// several worlds at the same time. If there is an overlap filter callback, updates one world after another. The
-    /// result does not depend on the number of threads. Cost: an update of each changed world, and one check for
-    /// each unchanged world. Unchanged worlds keep their lastCost(), and unused memory until releaseUnusedMemory().
+    /// Makes the cache's pairs exact, as SpatialHashBroadphase::calculateOverlappingPairs() for each world. First
+    /// removes separated pairs of all worlds, then adds new pairs, world by world. If parallelFor is set and there is
+    /// no overlap filter callback, updates several worlds at the same time. The result does not depend on the number
+    /// of threads. Cost: an update of each changed world, plus one check for each unchanged world. An unchanged world
+    /// keeps its lastCost(), and its unused memory until releaseUnusedMemory().
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -129,11 +131,11 @@ public:
         return pairCache_;
     }
 
-    /// Returns the box around all boxes of all worlds; zero without boxes. Cost: O(proxies).
+    /// Returns the box around all boxes of all worlds; zero if there are no boxes. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// If no world has a proxy, calls SpatialHashBroadphase::resetPool() on all worlds, and m_uniqueId counts from 1
-    /// again. Otherwise does nothing. Asserted: not within callbacks.
+    /// again. If a world has a proxy, does nothing. Asserted: no callback is running.
     void resetPool(btDispatcher* dispatcher) override;
 
     /// Does nothing, as in Bullet.
@@ -150,8 +152,8 @@ public:
 
     // --- Beyond Bullet, as SpatialHashBroadphase -------------------------------------------------
 
-    /// Finds the closest hit in any world. Returns the summed cost of all worlds' queries. Cost: O(worlds), plus a
-    /// query in each world, which ends at the nearest hit so far.
+    /// Finds the closest hit in all worlds. Returns the sum of the queries' costs. Cost: O(worlds), plus a query in
+    /// each world, which stops at the nearest hit found before.
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 
@@ -159,7 +161,7 @@ public:
     void refilter(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
     void refilterAll(btDispatcher* dispatcher);
 
-    /// Does nothing for proxies of different worlds, which never pair anyway.
+    /// Does nothing if the proxies are in different worlds, because such proxies never pair.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     [[nodiscard]] bool isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const;
@@ -170,26 +172,27 @@ public:
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
-    /// Shifts all worlds. Returns how many boxes were rounded. If memory runs out, only the first worlds are
-    /// shifted. Do not repeat the call: it would shift the first worlds twice.
+    /// Shifts all worlds. Returns the number of rounded boxes. If memory runs out, only the first worlds are shifted.
+    /// Do not repeat the call: it would shift these worlds twice.
     std::size_t shiftOrigin(const btVector3& shift);
 
     [[nodiscard]] const WorldsConfig& config() const noexcept { return config_; }
 
-    /// Returns the bytes held by all worlds, and by the pair cache if the broadphase made it.
+    /// Returns the bytes held by all worlds, and by the pair cache if the broadphase created it.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
     /// Calls releaseUnusedMemory() of all worlds and of the pair cache.
     void releaseUnusedMemory() noexcept;
 
-    /// Returns a broken invariant of a world or of the owned PairCache, in a sentence; empty if all hold. Also:
-    /// - The owned cache holds as many pairs as all worlds together, unless the program took pairs out.
+    /// Returns a sentence about a broken invariant of a world or of the owned PairCache; empty if all hold. Also
+    /// checked:
+    /// - The owned cache has as many pairs as all worlds together, unless the program has removed pairs.
     [[nodiscard]] std::string validate() const;
 
 private:
     using World = SpatialHashBroadphase;
 
-    /// A world that is being updated, with its changes.
+    /// A world that is being updated, and the changes of its pairs.
     struct Updated {
         World* world;
         PairChanges changes{};
@@ -217,15 +220,15 @@ private:
     void setBehind() noexcept;
 
     WorldsConfig config_;
-    std::unique_ptr<PairCache> ownCache_;  // null if the program gave a cache
+    std::unique_ptr<PairCache> ownCache_;  // null if the program passed a cache
     PairCache* pairCache_;                 // null after the cache was destroyed
     int lastUniqueId_ = 0;
     std::vector<std::unique_ptr<World>> worlds_;
-    std::vector<Updated> updated_;       // worlds with changes
-    std::vector<BulletProxyPair> died_;  // in all updated worlds
+    std::vector<Updated> updated_;       // worlds in the present update
+    std::vector<BulletProxyPair> died_;  // died pairs of all updated worlds
     std::vector<BulletProxyPair> born_;
-    std::vector<int> notedIds_;  // scratch of setAabbs()
-    detail::PeakWatch peaks_;    // of the pair cache
+    std::vector<int> notedIds_;  // scratch for setAabbs()
+    detail::PeakWatch peaks_;    // capacity of the pair cache
 };
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A camera and its viewport: turns pixels into rays and rectangles.
+// A camera and its viewport: converts pixels to rays and rectangles.
 //
 //     const Camera<float> camera(viewProjection, DepthRange::zeroToOne, Viewport(0, 0, 1920, 1080));
 //     const Picked<float> picked = pickNearest(grid, camera.rayThrough({mouseX + 0.5, mouseY + 0.5}));
 //
-// Cameras   All cameras of frustum.hpp. Results are computed in double precision, and rounded once at the end.
+// Cameras   Uses any matrix that frustum.hpp accepts. Results are computed in double precision, and rounded once at
+//           the end.
 // Pixels    The middle of the pixel in column i and row k is (i + 0.5, k + 0.5).
 // Units     metres in the world
 // Bad data  Rays and rectangles are empty if the matrix has no inverse, the viewport has no size, or a pixel is NaN.
-//           cameraError() explains faults of matrix and viewport.
-// Threads   Cameras are values: use them on any thread.
+//           cameraError() explains faults of the matrix and viewport.
+// Threads   Several threads may call const functions of a Camera at once.
 
 #include <broadphase/regions.hpp>
 #include <integration/camera/detail/camera_inverse.hpp>
@@ -37,7 +38,7 @@ struct Viewport {
 
     constexpr Viewport() = default;
 
-    /// Takes numbers of any type, such as the integers of window systems.
+    /// Takes numbers of any type, such as integers from a window system.
     template <class X, class Y, class Width, class Height>
         requires(std::is_arithmetic_v<X>&& std::is_arithmetic_v<Y>&& std::is_arithmetic_v<Width>&&
                      std::is_arithmetic_v<Height>)
@@ -48,8 +49,7 @@ struct Viewport {
           height(static_cast<double>(rows)) {}
 };
 
-/// Which depth the near plane has: the lowest (nearFirst) or the highest (reversed). Matters only for orthographic
-/// cameras.
+/// The depth of the near plane: the lowest (nearFirst) or the highest (reversed). Ignored for perspective cameras.
 enum class DepthOrder : std::uint8_t { nearFirst, reversed };
 
 namespace detail {
@@ -61,7 +61,7 @@ template <class Scalar>
 }  // namespace detail
 
 /// Returns a sentence that explains why nothing is visible through the 4 x 4 matrix and the viewport: the matrix is
-/// singular, a number is not finite, or the viewport has no size. Empty if there is no fault.
+/// singular, a number is not finite, or the viewport has no size. Returns an empty string if there is no fault.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string cameraError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const Viewport& viewport) {
@@ -74,8 +74,8 @@ class HASHPHASE_CAMERA_TEMPLATE_EXPORT Camera {
 public:
     using Matrix = Eigen::Matrix<Scalar, 4, 4>;
 
-    /// Takes a 4 x 4 matrix from world to clip coordinates (frustum.hpp). Does not throw for bad data: isValid()
-    /// returns false instead. Cost: one inversion of the matrix.
+    /// Takes a 4 x 4 matrix that transforms world coordinates to clip coordinates (frustum.hpp). Does not throw for
+    /// bad data: isValid() returns false instead. Cost: one inversion of the matrix.
     template <class Derived>
     Camera(const Eigen::MatrixBase<Derived>& viewProjection, DepthRange depthRange,
            const Viewport& viewport, DepthOrder depthOrder = DepthOrder::nearFirst)
@@ -85,16 +85,16 @@ public:
     [[nodiscard]] bool isValid() const noexcept { return isValid_; }
 
     /// Returns the ray through a pixel, inside or outside the viewport, from the near plane to the far plane. A
-    /// perspective ray ends at most `farthest` [m] behind the near plane, measured along the view; an orthographic
-    /// ray always ends on the far plane. Empty (RayRegion::isEmpty()) if nothing is visible at the pixel, or
-    /// `farthest` is not positive.
+    /// perspective ray ends at most `farthest` [m] beyond the near plane, measured along the view direction. An
+    /// orthographic ray always ends on the far plane. The ray is empty (RayRegion::isEmpty()) if nothing is visible
+    /// at the pixel, or `farthest` is not positive.
     [[nodiscard]] RayRegion<Scalar> rayThrough(const Pixel& pixel,
                                                double farthest = kFarthestView) const;
 
-    /// Takes two opposite corners in any order. Returns the part of their rectangle that is in the viewport, in
-    /// normalised device coordinates. The part may be a line or a point. The part isEmpty() if the rectangle is
+    /// Takes two opposite corners of a rectangle in any order. Returns the part of the rectangle inside the viewport,
+    /// in normalised device coordinates. This part may be a line or a point. The part isEmpty() if the rectangle is
     /// outside the viewport.
-    // A template, like viewProjection(), because Eigen's alignment depends on the program's options.
+    // A template, like viewProjection(), because the alignment of Eigen types depends on compiler options.
     template <class Rectangle = ScreenRectangle<Scalar>>
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Rectangle rectangleBetween(const Pixel& a,
                                                                       const Pixel& b) const {
@@ -103,7 +103,7 @@ public:
         return {Corner(edges[0], edges[1]), Corner(edges[2], edges[3])};
     }
 
-    /// rectangleBetween() as left, bottom, right and top edges.
+    /// As rectangleBetween(), but returns the left, bottom, right and top edges.
     [[nodiscard]] detail::ScreenEdges<Scalar> edgesBetween(const Pixel& a, const Pixel& b) const;
 
     /// The matrix that the constructor took.

@@ -3,14 +3,14 @@
 
 // The view of a camera as a convex region.
 //
-// Matrices  Any 4 x 4 matrix that takes world coordinates, as columns (x, y, z, 1), to clip coordinates. It may be
-//           perspective, orthographic or oblique, with a reversed depth range or an infinite far plane. Visible
+// Matrices  Any 4 x 4 matrix that transforms world coordinates, as columns (x, y, z, 1), to clip coordinates. It may
+//           be perspective, orthographic or oblique, with a reversed depth range or an infinite far plane. Visible
 //           points have -w <= x <= w, -w <= y <= w, and z in the DepthRange. For a column-major `const float* matrix`
 //           (OpenGL, GLM, Vulkan), pass Eigen::Map<const Eigen::Matrix4f>(matrix) to frustumRegion<float>().
 // Units     metres in the world; normalised device coordinates from -1 to 1 on the screen
-// Bad data  A matrix with a NaN or infinity sees nothing: frustumError() returns the reason. A singular matrix sees
-//           only a line, a sheet or nothing. A transposed matrix is a valid matrix with a wrong view: no error
-//           reports it.
+// Bad data  If the matrix has a NaN or infinity, nothing is visible: frustumError() returns the reason. If the matrix
+//           is singular, only a line, a plane or nothing is visible. A transposed matrix gives a wrong view, but no
+//           error.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/convex_region.hpp>
@@ -27,8 +27,8 @@
 
 namespace hashphase {
 
-/// Depths of clip space: z from -w to w (minusOneToOne: OpenGL), or from 0 to w (zeroToOne: Direct3D, Vulkan, Metal).
-/// Reversed depths do not change the choice.
+/// Range of z in clip space: from -w to w (minusOneToOne: OpenGL), or from 0 to w (zeroToOne: Direct3D, Vulkan,
+/// Metal). The range is the same for reversed depths.
 enum class DepthRange : std::uint8_t { minusOneToOne, zeroToOne };
 
 /// A part of the screen in normalised device coordinates: x to the right, y upwards, from -1 to 1.
@@ -44,11 +44,11 @@ template <class Scalar>
 
 namespace detail {
 
-/// Edges: left, bottom, right, top.
+/// The left, bottom, right and top edges.
 template <class Scalar>
 using ScreenEdges = std::array<Scalar, 4>;
 
-// Inlined into the program, so that the libraries do not depend on how the program's Eigen aligns
+// Inlined into the program, because the libraries must not depend on the alignment of the program's Eigen types
 // (core/unaligned.hpp).
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline ScreenEdges<Scalar> edgesOf(
@@ -66,8 +66,9 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Returns a sentence that explains why nothing is visible through the 4 x 4 matrix, or in that part of the screen.
-/// Empty if there is no fault. A wrong but valid matrix is not detected: test a point that must be visible.
+/// Returns a sentence that explains why nothing is visible through the 4 x 4 matrix, or in `rectangle`. Returns an
+/// empty string if there is no fault. Does not detect wrong but valid matrices: test whether a known point is
+/// visible.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string frustumError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection,
@@ -76,9 +77,9 @@ template <class Scalar>
 }
 
 /// Returns the planes of the view through the 4 x 4 matrix and a rectangle of the screen, in the order left, right,
-/// bottom, top, near, far. The planes face inwards and are not normalised. A reversed depth range exchanges near and
-/// far. Every point is inside an infinite far plane. Source: Gribb and Hartmann, "Fast Extraction of Viewing Frustum
-/// Planes from the World-View-Projection Matrix" (2001).
+/// bottom, top, near, far. The normals point inwards and are not normalised. If depths are reversed, near and far are
+/// exchanged. If the far plane is infinite, every point is inside this plane. Source: Gribb and Hartmann, "Fast
+/// Extraction of Viewing Frustum Planes from the World-View-Projection Matrix" (2001).
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::array<Eigen::Hyperplane<Scalar, 3>, 6>
 frustumPlanes(const Eigen::Matrix<Scalar, 4, 4>& viewProjection, DepthRange depthRange,

@@ -3,15 +3,15 @@
 
 // The part of the ground that a camera sees: the footprint of a screen rectangle on a map.
 //
-// Footprint  The part of the view (frustum.hpp) between two heights, projected along the up axis: a convex polygon.
-//            Seen from above, every object that the view touches between the heights touches the polygon. With equal
-//            heights, the polygon is the view's intersection with the plane at that height.
-// Horizon    Rays that never reach the ground end on the far plane, or `farthest` behind the near plane if that is
-//            nearer. Orthographic rays always end on the far plane.
+// Footprint  A convex polygon: the part of the view (frustum.hpp) between two heights, projected along the up axis.
+//            On the map, the polygon touches every object that the view touches between the heights. If the heights
+//            are equal, the polygon is the intersection of the view and the plane at that height.
+// Horizon    Perspective views end at the far plane or `farthest` beyond the near plane, whichever is nearer.
+//            Orthographic views always end at the far plane.
 // Units      metres
 // Bad data   The footprint is empty if the matrix is singular, a height is NaN, `low` is above `high`, or `farthest`
-//            is not positive and finite. footprintError() returns the reason. Otherwise, an empty footprint means
-//            that the camera sees no ground.
+//            is not positive or not finite. footprintError() returns the reason. If there is no error, an empty
+//            footprint means that the camera sees no ground.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -26,7 +26,7 @@
 
 namespace hashphase {
 
-/// By default, views end at most this far behind the near plane [m].
+/// Default of `farthest`: views end at most this far beyond the near plane [m].
 inline constexpr double kFarthestView = 1e6;
 
 /// The heights between which all objects on the ground lie.
@@ -37,8 +37,8 @@ struct HeightRange {
     UpAxis up = UpAxis::y;
 };
 
-/// A convex polygon on the map, and the vertical prism over it between two heights. (The paper's drag box and
-/// top-down camera use two corners and one height instead.)
+/// A convex polygon on the map, and the vertical prism over the polygon between two heights. (The paper's drag box
+/// and top-down camera use two corners and one height instead.)
 template <class Scalar>
 class HASHPHASE_CAMERA_TEMPLATE_EXPORT GroundFootprint {
 public:
@@ -48,8 +48,8 @@ public:
     /// Maximum number of corners: a polyhedron with nine faces has at most 14.
     static constexpr std::size_t kMostCorners = 14;
 
-    /// Takes a 4 x 4 matrix (frustum.hpp), the heights, and a rectangle of the screen. The view ends at most
-    /// `farthest` [m] behind the near plane. Cost: some microseconds.
+    /// Takes a 4 x 4 matrix (frustum.hpp), the heights, and a rectangle of the screen. A perspective view ends at
+    /// most `farthest` [m] beyond the near plane. Cost: some microseconds.
     template <class Derived>
     GroundFootprint(const Eigen::MatrixBase<Derived>& viewProjection, DepthRange depthRange,
                     const HeightRange<Scalar>& heights,
@@ -60,14 +60,15 @@ public:
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
-    /// The polygon's corners, in the direction of rotation from the first axis to the second. A footprint without
-    /// area has one or two corners.
+    /// The polygon's corners, in the direction of rotation from the first axis to the second. If the area is zero,
+    /// there are one or two corners.
     [[nodiscard]] std::span<const Point> corners() const noexcept {
         return {corners_.begin(), corners_.end()};
     }
 
-    /// Returns the vertical prism over the polygon between the heights, for boxes that touch the prism or are inside.
-    /// Every box that touches the view between the heights touches the prism. Cost: as a ConvexRegion.
+    /// Returns the vertical prism over the polygon as a query region. `containment` selects boxes that touch the
+    /// prism, or only boxes inside. Every box that touches the view between the heights touches the prism. Cost: as
+    /// making a ConvexRegion.
     [[nodiscard]] ConvexRegion<Scalar> region(
         Containment containment = Containment::touching) const;
 
@@ -100,8 +101,8 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Returns a sentence that explains why the footprint is empty (see Bad data). Empty if the data are good; the camera
-/// may still see no ground.
+/// Returns a sentence that explains why the footprint is empty (see Bad data). Returns an empty string if the data
+/// are good, even if the camera sees no ground.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string footprintError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection, const HeightRange<Scalar>& heights,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Ids of objects that are valid on all ranks. A ProxyId is valid in one grid only.
+// Ids of objects that are valid on all ranks. A ProxyId is valid only in one grid.
 
 #include <broadphase/export.hpp>
 
@@ -12,7 +12,7 @@
 
 namespace hashphase {
 
-/// The id of one object on all ranks. Objects that exist at the same time must have different numbers.
+/// The id of one object on all ranks. Objects that exist at the same time must have different values.
 struct GlobalId {
     std::uint64_t value = 0;
 
@@ -34,7 +34,7 @@ struct GlobalPair {
 
 namespace detail {
 
-/// Mixes all bits. SplitMix64, after G. Steele, D. Lea and C. Flood, "Fast splittable pseudorandom number
+/// Returns a hash of x. SplitMix64, after G. Steele, D. Lea and C. Flood, "Fast splittable pseudorandom number
 /// generators", 2014.
 [[nodiscard]] constexpr std::uint64_t mixedBits(std::uint64_t x) noexcept {
     x += 0x9e3779b97f4a7c15U;
@@ -45,8 +45,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// A checksum of a set of pairs: a count and a hash, independent of the order of pairs. Different sets have different
-/// sums, except with a chance of 2^-64. Add the sums of ranks with +=.
+/// A checksum of a set of pairs: a count and a hash, independent of the order of pairs. Two different sets have equal
+/// sums only with a probability of 2^-64. Add the sums of ranks with +=.
 struct PairSum {
     std::uint64_t count = 0;
     std::uint64_t hash = 0;

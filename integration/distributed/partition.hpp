@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Space cut into regions, one for each rank (process) of a simulation.
+// Divides space into regions, one for each rank (process) of a simulation.
 //
 // Regions  A tree of axis-aligned planes cuts space into boxes. Regions are half-open: a region includes its min
 //          faces, not its max faces. Every point is in exactly one region. Outer regions are infinite.
-// Pairs    A pair has a point: on each axis, the larger coordinate of both min corners. The rank whose region
-//          contains the point has both boxes, and reports the pair, once and without messages.
+// Pairs    A pair has a point: on each axis, the larger coordinate of the two min corners. The rank whose region
+//          contains the point has both boxes. Only this rank reports the pair, and needs no messages.
 // Exact    Coordinates are compared with cuts, and never rounded.
 // Threads  Any number of threads may call const members at the same time.
 // Source   Recursive bisection after M. Berger and S. Bokhari, "A partitioning strategy for nonuniform problems on
-//          multiprocessors", 1987. The pair's point as in waLBerla, C. Godenschwager et al., 2013.
+//          multiprocessors", 1987. Points of pairs as in waLBerla, C. Godenschwager et al., 2013.
 
 #include <broadphase/aabb.hpp>
 #include <integration/distributed/export.hpp>
@@ -28,7 +28,8 @@
 
 namespace hashphase {
 
-/// A plane across an axis. Points with a coordinate less than `at` are below the plane, all other points above it.
+/// A plane perpendicular to an axis. Points with a coordinate less than `at` are below the plane, all other points
+/// above it.
 template <class Scalar>
 struct Cut {
     Scalar at = 0;           ///< [m]
@@ -40,17 +41,19 @@ struct Cut {
 /// A point, and the amount of work there.
 template <class Scalar>
 struct WeightedPoint {
-    Vector3<Scalar> at;  ///< a min corner [m]
+    Vector3<Scalar> at;  ///< min corner of an object [m]
     double weight = 0;   ///< work in any unit, 0 or more
 };
 
-/// Returns the box around both corners, also of an inverted box. It contains the pairPoint() of each pair of the box.
+/// Returns the box around both corners of `box`, which may be inverted. The result contains the pairPoint() of each
+/// pair of `box`.
 template <class Scalar>
 [[nodiscard]] Aabb<Scalar> hullOf(const Aabb<Scalar>& box) noexcept {
     return {box.min().cwiseMin(box.max()), box.min().cwiseMax(box.max())};
 }
 
-/// Returns the point that decides which rank owns the pair of two overlapping boxes. Both hulls contain the point.
+/// Returns the point that decides which rank owns the pair of two overlapping boxes. The point is in the hulls of
+/// both boxes.
 template <class Scalar>
 [[nodiscard]] Vector3<Scalar> pairPoint(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
     return a.min().cwiseMax(b.min());
@@ -60,18 +63,18 @@ template <class Scalar>
 template <class Scalar>
 class HASHPHASE_DISTRIBUTED_TEMPLATE_EXPORT Partition {
 public:
-    /// Makes one region, all of space, for one rank.
+    /// Makes one region for one rank: all of space.
     Partition() = default;
 
-    /// Takes the cuts in the order of cuts(): n - 1 cuts for n ranks. Throws std::invalid_argument if a cut is at NaN
-    /// or its axis is above 2.
+    /// Takes the cuts in the order of cuts(): n - 1 cuts for n ranks. Throws std::invalid_argument if Cut::at is NaN
+    /// or Cut::axis is above 2.
     explicit Partition(std::span<const Cut<Scalar>> cuts);
 
-    /// Cuts space so that each rank gets about the same weight. Each cut crosses the axis with the largest spread of
-    /// points, where it divides the weight best. Ignores points with a NaN. If `last` has the same number of ranks,
-    /// keeps its axes, unless the spread along another axis is clearly larger: fewer objects change ranks. Equal
-    /// points in equal order give equal results. Asserted: `ranks` is 1 or more.
-    /// Cost: O(points * log(points) * log(ranks)).
+    /// Cuts space so that each rank gets about the same weight. Each cut is perpendicular to the axis along which
+    /// points are spread most, at the coordinate that divides the weight best. Ignores points with a NaN. If `last`
+    /// has the same number of ranks, cuts keep the axes of `last`, unless the spread along another axis is clearly
+    /// larger. So fewer objects change ranks. Equal points in equal order give equal results. Asserted: `ranks` is 1
+    /// or more. Cost: O(points * log(points) * log(ranks)).
     [[nodiscard]] static Partition balanced(std::uint32_t ranks,
                                             std::span<const WeightedPoint<Scalar>> points,
                                             const Partition* last = nullptr);
@@ -80,15 +83,15 @@ public:
         return static_cast<std::uint32_t>(cuts_.size() + 1);
     }
 
-    /// Returns the rank whose region contains the point [m]. A NaN counts as above every cut. Cost: O(log ranks).
+    /// Returns the rank whose region contains the point [m]. A NaN is above every cut. Cost: O(log ranks).
     [[nodiscard]] std::uint32_t rankOf(const Vector3<Scalar>& point) const noexcept;
 
-    /// Returns the region of a rank [m]: points with min() <= point < max(). A cut outside the region that it divides
-    /// makes an empty region.
+    /// Returns the region of a rank [m]: points with min() <= point < max(). If a cut is outside the region that it
+    /// divides, one part is empty.
     [[nodiscard]] Aabb<Scalar> region(std::uint32_t rank) const noexcept;
 
-    /// Calls visit(rank) in ascending order for each rank whose region touches the hull of the box. A box with a NaN
-    /// has no ranks. Cost: O(ranks visited * log ranks).
+    /// Calls visit(rank) in ascending order for each rank whose region touches the hull of the box. If the box has a
+    /// NaN, visits no rank. Cost: O(visited ranks * log ranks).
     template <class Visit>
     void forEachRank(const Aabb<Scalar>& box, const Visit& visit) const {
         const Aabb<Scalar> hull = hullOf(box);
@@ -103,8 +106,8 @@ public:
         }
     }
 
-    /// Calls visit(rank) in ascending order for each rank whose region, as a closed box, has region.key(box) >= 0.
-    /// `region` is a query region, such as RayRegion. Cost: as forEachRank().
+    /// Calls visit(rank) in ascending order for each rank whose space, as a closed box, touches a query region such
+    /// as RayRegion: region.key(space) >= 0. Cost: as forEachRank().
     template <class Region, class Visit>
     void forEachRankWithKey(const Region& region, const Visit& visit) const {
         const auto sides = [&](const Aabb<Scalar>& box, const Cut<Scalar>& cut) {
@@ -115,8 +118,8 @@ public:
         }
     }
 
-    /// Returns the cuts from the root of the tree: each cut, then the cuts below it, then the cuts above it. A cut
-    /// between n ranks has the first n / 2 ranks (rounded down) below it.
+    /// Returns the cuts in preorder: each cut, then the cuts below it, then the cuts above it. If a cut divides n
+    /// ranks, the first n / 2 ranks (rounded down) are below the cut.
     [[nodiscard]] std::span<const Cut<Scalar>> cuts() const noexcept { return cuts_; }
 
     friend bool operator==(const Partition&, const Partition&) = default;
@@ -135,7 +138,7 @@ private:
         return box;
     }
 
-    // Visits the ranks from `first` to `last` - 1, which cuts_[node] divides.
+    // Visits the ranks `first` to `last` - 1. Their first cut is cuts_[node].
     template <class Sides, class Visit>
     void visitNode(std::uint32_t first, std::uint32_t last, std::size_t node,
                    const Aabb<Scalar>& region, const Sides& sides, const Visit& visit) const {

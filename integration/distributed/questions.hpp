@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Queries to all ranks: find objects that touch a box, lie within a distance, or are hit by a ray, on any rank.
+// Queries to all ranks: find objects that touch a box, are within a distance, or are hit by a ray, on any rank.
 //
 //     for (const Parcel& parcel : asked.pack(grid, questions)) { send(parcel.rank, parcel.bytes); }
 //     for (const Parcel& parcel : asked.answer(grid, received)) { send(parcel.rank, parcel.bytes); }
 //     const Answers<float> answers = asked.finish(received);
 //
-// Transport  Your program carries the parcels, as for RankGrid.
-// Frame      All ranks call pack(), answer() and finish(), even without a question, after RankGrid::finish() and
-//            before the next change (asserted).
+// Transport  Your program sends the parcels, as for RankGrid.
+// Frame      After RankGrid::finish() and before the next change (asserted), all ranks call pack(), answer() and
+//            finish(), even ranks that have no question.
 // Result     Answers do not depend on the number of ranks.
-// Failure    answer() and finish() throw RankError, as RankGrid::finish() does.
+// Failure    answer() and finish() throw RankError if a parcel is invalid.
 // Bad data   A question with a NaN finds nothing.
 
 #include <integration/distributed/rank_grid.hpp>
@@ -30,13 +30,13 @@ struct Question {
     enum class Shape : std::uint8_t { box, sphere, ray };
 
     Shape shape = Shape::box;
-    Aabb<Scalar> extent;  ///< the box; for a ray, the moving box relative to the ray's point [m]
+    Aabb<Scalar> extent;  ///< the box; for a ray: box around each ray point, relative to it [m]
     Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< start of a ray, centre of a sphere [m]
     Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< end of a ray [m]
     Scalar radius = 0;                               ///< of a sphere [m]
-    std::uint32_t most = ~std::uint32_t{0};  ///< at most this number of objects, by smallest keys
+    std::uint32_t most = ~std::uint32_t{0};  ///< maximum number of objects; smallest keys win
 
-    /// Finds the objects in a BoxRegion.
+    /// Finds the objects that touch a box (BoxRegion).
     [[nodiscard]] static Question box(const Aabb<Scalar>& box,
                                       std::uint32_t most = ~std::uint32_t{0}) {
         Question question;
@@ -44,7 +44,7 @@ struct Question {
         question.most = most;
         return question;
     }
-    /// Finds the objects in a SphereRegion. With `most`, finds the nearest objects.
+    /// Finds the objects that touch a sphere (SphereRegion), at most the `most` nearest objects.
     [[nodiscard]] static Question sphere(const Vector3<Scalar>& center, Scalar radius,
                                          std::uint32_t most = ~std::uint32_t{0}) {
         Question question;
@@ -54,7 +54,7 @@ struct Question {
         question.most = most;
         return question;
     }
-    /// Finds the objects in a RayRegion. With `most` 1, finds the first box that the ray enters.
+    /// Finds the objects that a ray hits (RayRegion). If `most` is 1, finds the first box that the ray enters.
     [[nodiscard]] static Question ray(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
                                       std::uint32_t most = ~std::uint32_t{0},
                                       const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(),
@@ -75,7 +75,7 @@ struct FoundObject {
     Scalar key =
         0;  ///< box: 0; sphere: squared distance [m^2]; ray: fraction of the ray, 0 at its start
     GlobalId object;
-    std::uint32_t home = 0;  ///< the rank that owns it
+    std::uint32_t home = 0;  ///< the rank that owns the object
 
     friend constexpr auto operator<=>(const FoundObject&, const FoundObject&) = default;
 };
@@ -85,7 +85,7 @@ template <class Scalar>
 struct Answers {
     std::span<const FoundObject<Scalar>> found;
     std::span<const std::size_t>
-        begins;  ///< where each answer begins in `found`, and where the last ends
+        begins;  ///< indices in `found` at which answers begin, and the end of the last answer
 
     /// Returns the answer to question i: each object once, sorted by key, then by id.
     [[nodiscard]] std::span<const FoundObject<Scalar>> of(std::size_t i) const noexcept {
@@ -97,16 +97,17 @@ struct Answers {
 template <class Scalar>
 class HASHPHASE_DISTRIBUTED_TEMPLATE_EXPORT RankQuestions {
 public:
-    /// Returns parcels of questions for other ranks, valid until the next pack() or answer(). Also answers the
-    /// questions from this rank's grid. Throws std::length_error beyond 2^32 - 1 questions. Cost: O(log ranks) for
-    /// each rank asked, plus the queries on this rank.
+    /// Returns parcels of questions for other ranks, valid until the next pack() or answer(). Also queries this
+    /// rank's grid. Throws std::length_error beyond 2^32 - 1 questions. Cost: O(log ranks) for each rank that gets a
+    /// question, plus the queries on this rank.
     std::span<const Parcel> pack(const RankGrid<Scalar>& grid,
                                  std::span<const Question<Scalar>> questions);
 
-    /// Returns answers for other ranks, valid until the next pack() or answer(). Cost: a query for each question.
+    /// Returns parcels of answers for other ranks, valid until the next pack() or answer(). Cost: one query for each
+    /// question.
     std::span<const Parcel> answer(const RankGrid<Scalar>& grid, std::span<const Parcel> received);
 
-    /// Returns the answers of all ranks. Cost: O(n log n) for n found objects.
+    /// Returns all ranks' answers to this rank's questions. Cost: O(n log n) for n found objects.
     Answers<Scalar> finish(std::span<const Parcel> received);
 
 private:
@@ -121,7 +122,7 @@ private:
     void clearWriters();
     std::span<const Parcel> sealParcels();
 
-    std::vector<detail::ByteWriter> writers_;  // by rank
+    std::vector<detail::ByteWriter> writers_;  // index: rank
     std::vector<std::uint32_t> destinations_;
     std::vector<Parcel> parcels_;
     std::vector<FoundObject<Scalar>> answer_;  // to one question

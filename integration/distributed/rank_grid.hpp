@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// One rank's part of a grid over many ranks: its objects and pairs, and ghosts, copies of other ranks' objects.
+// One rank's part of a grid over many ranks: objects, pairs, and ghosts. Ghosts are copies of other ranks' objects.
 //
 //     for (const Parcel& parcel : grid.pack()) { send(parcel.rank, parcel.bytes); }
 //     const RankChanges changes = grid.finish(received);
 //
-// Transport  Your program carries the parcels between ranks. hashphase::mpi does it with MPI.
-// Objects    have a GlobalId on all ranks, and a ProxyId on this rank, for your data. finish() moves each object to
-//            its home, which owns it: the rank whose region contains its min corner. The payload, bytes of yours,
-//            moves with the object.
-// Ghosts     Each other rank whose region the object's box touches has a ghost: box, groups and payload. pack() sends
-//            only changes.
-// Pairs      All ranks together report the births and deaths of one grid, each once. If a pair moves to another rank,
-//            no rank reports a birth or death.
-// Frame      Changes are visible on this rank at once, on other ranks after finish(). Ask other ranks (questions.hpp)
-//            before the next change.
-// Result     Equal calls give equal results: finish() reads parcels in the order of ranks.
-// Failure    If memory runs out in add(), move(), remove() or payload(), nothing changes. For an invalid parcel,
-//            finish() throws RankError, which names the sending rank. After a RankError, or if memory runs out in
-//            pack() or finish(), this grid is unusable.
+// Transport  Your program sends the parcels between ranks. hashphase::mpi does this with MPI.
+// Objects    An object has one GlobalId on all ranks, and a ProxyId on this rank. Its home is the rank whose region
+//            contains its min corner. finish() moves each object to its home, which then owns the object. The payload
+//            (bytes of your program) moves with the object.
+// Ghosts     If an object's box touches another rank's region, that rank has a ghost: box, groups and payload. pack()
+//            sends only changes.
+// Pairs      All ranks together report the births and deaths of one large grid, each once. If a pair moves to another
+//            rank, no rank reports a birth or death.
+// Frame      Changes are visible on this rank at once, and on other ranks after finish(). To query other ranks, use
+//            questions.hpp before the next change.
+// Result     Deterministic: equal calls give equal results. finish() sorts parcels by sender.
+// Failure    If memory runs out in add(), move(), remove() or payload(), nothing changes. If a parcel is invalid,
+//            finish() throws RankError, which names the sender. After a RankError, or if memory runs out in pack() or
+//            finish(), this grid is unusable.
 // Threads    Several threads may query grid(). During any other call, no other thread may use this object.
-// Misuse     Asserted, without effect: pack() and finish() in the wrong order, changes between pack() and finish(),
-//            stale ids, and ghosts passed as objects.
+// Misuse     These fail an assertion and have no effect: pack() and finish() in the wrong order, changes between
+//            pack() and finish(), stale ids, and ghosts passed as objects.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/byte_stream.hpp>
@@ -46,7 +46,7 @@
 
 namespace hashphase {
 
-/// A parcel is invalid, or does not fit this rank.
+/// A parcel is invalid, or does not match this rank's state.
 class HASHPHASE_DISTRIBUTED_EXPORT RankError : public std::runtime_error {
 public:
     explicit RankError(const std::string& sentence);
@@ -55,7 +55,7 @@ public:
     ~RankError() override;
 };
 
-/// Settings, equal on all ranks.
+/// Settings, which must be equal on all ranks.
 struct RankGridConfig {
     GridConfig grid;
     /// Bytes of payload in each object and ghost. Valid: 0 to 65,536.
@@ -66,22 +66,23 @@ struct RankGridConfig {
 
 /// Bytes from one rank to another. Valid until the next pack().
 struct Parcel {
-    std::uint32_t rank = 0;  ///< to send: the receiving rank; received: the sending rank
+    std::uint32_t rank = 0;  ///< to send: the receiver; received: the sender
     std::span<const std::byte> bytes;
 };
 
 /// An object that has moved from one rank to another.
 struct Migration {
     GlobalId object;
-    ProxyId proxy;           ///< on this rank; departed object: its ghost, or a stale id
-    std::uint32_t rank = 0;  ///< arrived object: its old home; departed object: its new home
+    ProxyId proxy;           ///< on this rank; if departed: its ghost, or a stale id
+    std::uint32_t rank = 0;  ///< if arrived: its old home; if departed: its new home
 };
 
 /// The changes of a frame. Valid until the next finish().
 struct RankChanges {
-    /// Births and deaths that this rank reports, by its ProxyIds, sorted. globalPair() also takes departed objects.
+    /// Births and deaths that this rank reports, as local ProxyIds, sorted. globalPair() also accepts removed
+    /// proxies.
     PairChanges pairs;
-    /// Objects that arrived, sorted by old home, then in the order of `departed` on the old home.
+    /// Objects that arrived, sorted by old home. Objects from one home keep the order of its `departed`.
     std::span<const Migration> arrived;
     std::span<const Migration> departed;
 };
@@ -90,10 +91,10 @@ struct RankChanges {
 struct RankCost {
     PairCost pairs;                 ///< of this rank's grid, ghosts included
     std::uint64_t ghosts = 0;       ///< on this rank
-    std::uint64_t entriesSent = 0;  ///< changes of an object, once for each receiver
+    std::uint64_t entriesSent = 0;  ///< changed objects, counted once for each receiver
     std::uint64_t bytesSent = 0;
     std::uint64_t parcelsSent = 0;
-    /// Estimated work: boxes filed, boxes tested and pairs. Unit: one box test.
+    /// Estimated work: boxes sorted into cells, boxes tested, and pairs. Unit: one box test.
     double load = 0;
 };
 
@@ -112,8 +113,8 @@ public:
 
     /// Adds an object on this rank, wherever its box is. The next finish() moves the object to its home. Its payload
     /// is zeros. `groups` are as in Grid::setGroups(), and cannot change later. Throws std::invalid_argument if this
-    /// rank has an object or ghost with this id. If objects with equal ids meet later, finish() throws RankError.
-    /// Throws std::length_error beyond 2^28 proxies. Cost: O(1) amortised.
+    /// rank has an object or ghost with this id. If two objects with equal ids meet on a rank later, finish() throws
+    /// RankError. Throws std::length_error beyond 2^28 proxies. Cost: O(1) amortised.
     ProxyId add(GlobalId object, const Box& box, const ProxyGroups& groups = {});
 
     /// Sets the box of an object that this rank owns. Cost: O(1).
@@ -132,10 +133,11 @@ public:
 
     /// Returns the payload of an object that this rank owns, for writing. The span is valid until the next add() or
     /// finish(). pack() sends the bytes to ghosts and to a new home. Call payload() again in each frame in which you
-    /// write, or pack() may not send the bytes. Cost: O(1).
+    /// write. Otherwise, pack() may not send the bytes. Cost: O(1).
     [[nodiscard]] std::span<std::byte> payload(ProxyId id);
 
-    /// Returns the payload of an object or ghost, for reading. finish() updates ghosts. Empty for a stale id.
+    /// Returns the payload of an object or ghost, for reading. finish() updates the payloads of ghosts. Returns an
+    /// empty span for a stale id.
     [[nodiscard]] std::span<const std::byte> readPayload(ProxyId id) const noexcept;
 
     /// Returns whether this rank owns the object; false for ghosts and stale ids.
@@ -146,8 +148,8 @@ public:
     /// Returns the home of an object, or of a ghost's object. Asserted: the id is valid in this grid.
     [[nodiscard]] std::uint32_t homeOf(ProxyId id) const;
 
-    /// Returns the GlobalId of an object or ghost. Until the next finish(), also takes proxies that the last frame
-    /// removed. For any other proxy, returns id 0 (asserted).
+    /// Returns the GlobalId of an object or ghost. Until the next finish(), also accepts proxies that the last frame
+    /// removed. Any other proxy fails an assertion, and returns id 0.
     [[nodiscard]] GlobalId globalId(ProxyId id) const;
 
     /// Returns the GlobalIds of a pair.
@@ -155,11 +157,11 @@ public:
         return hashphase::globalPair(globalId(pair.first), globalId(pair.second));
     }
 
-    /// Returns the object or ghost with this id; null if this rank has neither. Cost: O(1).
+    /// Returns the object or ghost with this id. Returns a null id if this rank has neither. Cost: O(1).
     [[nodiscard]] ProxyId find(GlobalId object) const noexcept;
 
-    /// Calls visit(ProxyId, const Box&) for each object that this rank owns, by ascending index. visit() may move and
-    /// remove objects. Cost: O(objects and ghosts).
+    /// Calls visit(ProxyId, const Box&) for each object that this rank owns, in ascending order of indices. visit()
+    /// may move and remove objects. Cost: O(objects and ghosts).
     template <class Visit>
     void forEachOwned(const Visit& visit) const {
         grid_.forEach([&](ProxyId id, const Box& box) {
@@ -173,21 +175,23 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return ownedCount_; }
     [[nodiscard]] std::size_t ghostCount() const noexcept { return grid_.size() - ownedCount_; }
 
-    /// The grid of objects and ghosts, for queries. After finish(), it has all that touch this rank's region.
+    /// The grid of objects and ghosts, for queries. After finish(), the grid has all objects that touch this rank's
+    /// region.
     [[nodiscard]] const Grid<Scalar>& grid() const noexcept { return grid_; }
 
     // --- Frame -----------------------------------------------------------------------------------
 
     /// Uses another partition from the next pack() on. Call it on all ranks in the same frame. Asserted: the number
-    /// of ranks is unchanged; not between pack() and finish(). Cost: O(objects), in the next pack().
+    /// of ranks is unchanged, and the call is not between pack() and finish(). Cost: O(objects and ghosts), in the
+    /// next pack().
     void setPartition(const Partition<Scalar>& partition);
 
-    /// Ends the changes of this frame. Returns the parcels for other ranks, sorted by rank. Cost: grows with added
-    /// and removed objects, and with changed objects at the region's border.
+    /// Ends the changes of this frame. Returns the parcels for other ranks, sorted by receiver. Cost: O(n) for n
+    /// added, removed, or (at the region's border) changed objects.
     std::span<const Parcel> pack();
 
     /// Ends the frame. Pass all parcels from other ranks for this frame, in any order. Throws RankError. Cost: as
-    /// Pairs::update(), plus reading the parcels.
+    /// Pairs::update(), plus O(received bytes).
     RankChanges finish(std::span<const Parcel> received, ParallelFor parallelFor = serialFor);
 
     // --- The whole -------------------------------------------------------------------------------
@@ -201,7 +205,7 @@ public:
         return !isPacked_ && !isPartitionNew_ && pairs_.isUpToDate();
     }
 
-    /// Calls visit(const ProxyPair&) for each pair that this rank owns, sorted by ProxyIds. One or both proxies may
+    /// Calls visit(const ProxyPair&) for each pair that this rank owns, in ascending order. One or both proxies may
     /// be ghosts. Asserted: isUpToDate(). Cost: as Pairs::collect().
     template <class Visit>
     void forEachPair(const Visit& visit) const {
@@ -212,7 +216,7 @@ public:
         }
     }
 
-    /// Appends the pairs that this rank owns, by GlobalIds, sorted. Cost and assertion: as forEachPair().
+    /// Appends the pairs that this rank owns, as GlobalIds, sorted. Cost and assertion: as forEachPair().
     void collect(std::vector<GlobalPair>& pairs) const;
 
     /// Returns the sum of the pairs that this rank owns. Cost and assertion: as forEachPair().
@@ -221,7 +225,8 @@ public:
     [[nodiscard]] const RankCost& lastCost() const noexcept { return cost_; }
 
     /// Returns min corners of up to `count` objects that this rank owns, for Partition::balanced(). Weights estimate
-    /// the work. Their sum is `load`, by default lastCost().load, but at least 1. Cost: 2 * `count` box queries.
+    /// the work. Their sum is max(load, 1). By default, `load` is lastCost().load. Cost: O(objects and ghosts), and
+    /// two box queries for each point.
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count) const;
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count,
                                                                 double load) const;
@@ -231,13 +236,13 @@ public:
     [[nodiscard]] const RankGridConfig& config() const noexcept { return config_; }
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Returns a broken invariant in a sentence; empty if all hold. Call it after finish().
+    /// Returns a broken invariant in a sentence, or an empty string if all invariants hold. Call it after finish().
     [[nodiscard]] std::string validate() const;
 
 private:
-    // Marks of a proxy, by ProxyId::index.
+    // Flags of a proxy, stored in marks_.
     enum Mark : std::uint16_t {
-        kOwned = 1,                // this rank owns it
+        kOwned = 1,                // owned by this rank
         kShared = 2,               // was not wholly in this rank's region at the last finish()
         kTouched = 4,              // is in touched_
         kHasBefore = 8,            // befores_ has its box at the last finish()
@@ -261,7 +266,7 @@ private:
     };
     [[nodiscard]] Entry readEntry(detail::ByteReader& reader) const;
 
-    /// Has no branches: at the border they are unpredictable.
+    /// Returns whether the region contains the box. Has no branches: at the border, they are unpredictable.
     [[nodiscard]] bool liesWithin(const Box& box) const noexcept {
         unsigned isOutside = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -331,33 +336,33 @@ private:
     Grid<Scalar> grid_;
     Pairs<Scalar> pairs_;
 
-    // Indexed by ProxyId::index.
+    // Arrays indexed by ProxyId::index.
     std::vector<std::uint16_t> marks_;
     std::vector<GlobalId> globalIds_;
     std::vector<Box> befores_;
-    // The home; for a proxy removed from this rank, its index in removedHere_.
+    // The home. For a proxy removed from this rank: its index in removedHere_.
     std::vector<std::uint32_t> homes_;
     std::vector<std::byte> payloads_;
-    // The index of a GlobalId in knownIds_ is the index of its proxy in knownProxies_.
+    // Invariant: the index of a GlobalId in knownIds_ is the index of its proxy in knownProxies_.
     detail::FlatSet knownIds_;
     std::vector<ProxyId> knownProxies_;
     std::size_t ownedCount_ = 0;
 
-    // Data of this frame.
-    std::vector<std::uint32_t> touched_;  // changed objects; in finish() also changed ghosts
+    // Data of the current frame.
+    std::vector<std::uint32_t> touched_;  // changed objects (indices); in finish() also ghosts
     struct RemovedProxy {
         ProxyId id;
         Box now;
     };
     std::vector<RemovedProxy> removedHere_;
-    std::vector<detail::ByteWriter> writers_;  // by rank
-    std::vector<std::uint32_t> entryCounts_;   // by rank
+    std::vector<detail::ByteWriter> writers_;  // index: rank
+    std::vector<std::uint32_t> entryCounts_;   // index: rank
     std::vector<std::uint32_t> destinations_;  // ranks whose writer is not empty
     std::vector<std::uint32_t> ranksBefore_;   // ranks that an object touched at the last finish()
     std::vector<std::uint32_t> ranksNow_;
     std::vector<Parcel> parcels_;
     std::vector<std::pair<Parcel, Entry>> entries_;  // received
-    // Proxies removed on this rank: formerNames_ in the last frame (sorted), nextFormerNames_ in this frame.
+    // Ids of removed proxies: formerNames_ in the last frame (sorted), nextFormerNames_ in this frame.
     struct FormerName {
         ProxyId id;
         GlobalId object;

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Applies a declaration (scene_effects.hpp) to a Bullet world. Bullet then computes only the declared effects.
+// Applies a declaration (scene_effects.hpp) to a Bullet world. After that, Bullet computes only the declared effects.
 //
 //     hashphase::WorldConfigurator configurator(world);      // integration/bullet/world_effects.hpp
 //     configurator.apply(hashphase::worldEffectsOf(scene));
 //     configurator.step(timeStep);                           // or world.stepSimulation()
 //
 //     effect       setting in Bullet                      lost without the effect
-//     motion       none: step() moves bodies              motion: step() then only finds pairs, if declared. After
+//     motion       none: step() moves bodies              motion: step() only finds pairs, if declared. After
 //                                                         you move bodies, call updateAabbs(). stepSimulation()
 //                                                         would move bodies that have a velocity
-//     terrain      none: the ground is your static body   the ground: leave out its body
+//     terrain      none: the ground is your static body   the ground: do not add its body
 //                  (static_triangles.hpp)
 //     pairs        the world's overlap filter             contacts, ghosts' lists, response and sweep
-//     response     each object's answer to contacts       bodies fall through each other; contacts are reported
+//     response     each object's answer to contacts       bodies pass through each other; contacts are reported
 //     sweep        m_useContinuous; CCD thresholds of     bodies that move by more than half their width in a step
 //                  bodies that are fast for their size    may pass through thin bodies
 //     sleeping     deactivation, linear thresholds        nothing, but Bullet also computes resting bodies
@@ -23,10 +23,10 @@
 //     all others   none: Observers query                  nothing
 //                  SpatialHashBroadphase::grid()
 //
-// Observers  identify objects by ProxyId, and keep data by index. When you remove an object, call
-//            Observers::forget(): a new object may get its index. After an origin shift, move zones, view and
+// Observers  Observers identify objects by ProxyId, and index data by ProxyId::index. When you remove an object, call
+//            Observers::forget(), because a new object may get its index. After an origin shift, move zones, view and
 //            interest yourself.
-// Ignored    ResponseEffect::restitution: each body has its own (WorldEffects::restitution sets all).
+// Ignored    ResponseEffect::restitution: each body has its own restitution (WorldEffects::restitution sets all).
 //            SweepEffect::mode: set SpatialHashConfig::sweep instead. SleepingEffect::framesBeforeSleep: bodies fall
 //            asleep after gDeactivationTime, 2 s.
 // Errors     A finite motion.bounds or sleeping.interestRadius is an error. Instead, put static planes at the bounds,
@@ -43,7 +43,7 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Returns the reason why Bullet cannot run the declaration, in a sentence. Empty if Bullet can.
+/// Returns the reason why Bullet cannot run the declaration, or an empty string if Bullet can.
 [[nodiscard]] inline std::string bulletEffectsError(const SceneEffects& effects) {
     const std::string error = effectsError(effects);
     if (!error.empty()) {
@@ -63,8 +63,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 }
 
 /// Returns the declaration as WorldEffects. To keep the bodies' own CCD thresholds, reset() `fastFrom` of the result.
-/// To keep their sleeping thresholds, set SleepingEffect::slowBelow to 0. Throws std::invalid_argument with
-/// bulletEffectsError().
+/// To keep the bodies' sleeping thresholds, set SleepingEffect::slowBelow to 0. Throws std::invalid_argument with
+/// bulletEffectsError(), if not empty.
 [[nodiscard]] inline WorldEffects worldEffectsOf(const SceneEffects& effects) {
     if (const std::string error = bulletEffectsError(effects); !error.empty()) {
         detail::raiseInvalidArgument(error);

@@ -12,7 +12,7 @@
 
 namespace hashphase {
 
-/// What a scene can declare. The first eight effects are its physics. The other six only query the scene.
+/// An effect that a scene can declare. The first eight effects are physics. The other six only query the scene.
 enum class Effect : std::uint8_t {
     motion,        ///< bodies move with their velocities
     terrain,       ///< bodies stand on the ground
@@ -37,7 +37,7 @@ inline constexpr std::array kAllEffects{
     Effect::culling,  Effect::proximity, Effect::zones,    Effect::radar,
 };
 
-/// Returns the enumerator's name, such as "boxSelection". Empty for any other value.
+/// Returns the enumerator's name, such as "boxSelection"; empty for other values.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string_view nameOf(Effect effect) noexcept;
 
 /// A set of effects: a value of two bytes, empty by default. Each operation costs O(1).
@@ -57,7 +57,7 @@ public:
         return set;
     }
 
-    /// Inserting a present effect, or erasing an absent effect, changes nothing.
+    /// insert() changes nothing if the effect is in the set. erase() changes nothing if the effect is not in the set.
     constexpr void insert(Effect effect) noexcept { bits_ |= bitOf(effect); }
     constexpr void erase(Effect effect) noexcept {
         bits_ &= static_cast<std::uint16_t>(~bitOf(effect));

@@ -2,17 +2,17 @@
 #pragma once
 
 // Runs the effects that only query a scene: culling, proximity, zones and radar in each frame, picking and box
-// selection on request. Works over any grid, such as a Simulation's or SpatialHashBroadphase::grid().
+// selection on request. Works with any grid, such as a Simulation's or SpatialHashBroadphase::grid().
 //
 // Undeclared  An undeclared effect has no phase, no table and no cost. A call that needs an undeclared effect throws
 //             UndeclaredEffect.
 // Frame       Set the view, interest or zones if they changed, then call observe() once.
 // Exact       The result of an effect depends only on the boxes and the effect's settings.
-// Late        An effect may be declared to run only in every n-th frame. In between, its earlier results stay; cost()
-//             counts late results.
-// Threads     Calls are queries of the grid. No other thread may use this object meanwhile.
-// Removed     Call forget() for each removed proxy. (A Simulation does so.)
-// Failure     std::bad_alloc is passed on. Some results of that frame are missing. The next frames work.
+// Late        An effect may be declared to run only in every n-th frame. In other frames, its last results stay, and
+//             cost() counts them as late.
+// Threads     Calls query the grid. During a call, no other thread may use this object.
+// Removed     Call forget() for each removed proxy. (Simulation calls it itself.)
+// Failure     If observe() throws std::bad_alloc, results of that frame are missing. The next frames work.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -39,21 +39,21 @@
 
 namespace hashphase {
 
-/// A grid, and the effects in which each proxy takes part: by default all.
+/// A grid, and the effects in which each proxy takes part (by default all effects).
 template <class Scalar>
 struct ObservedScene {
     const Grid<Scalar>& grid;
 
-    /// By ProxyId::index: the effects that may find the proxy. Beyond the end, all effects.
+    /// The effects that may find a proxy, indexed by ProxyId::index. Beyond the end: all effects.
     std::span<const EffectSet> effects = {};
 
-    /// By ProxyId::index: the proxy's group in the radar. Beyond the end, group 0.
+    /// The radar group of a proxy, indexed by ProxyId::index. Beyond the end: group 0.
     std::span<const std::uint32_t> groups = {};
 
     /// Effects in which at least one proxy takes part. Other effects do not run.
     EffectSet present = EffectSet::all();
 
-    /// Effects in which every proxy takes part. These run faster: they do not check each proxy.
+    /// Effects in which every proxy takes part. These effects run faster: they do not check each proxy.
     EffectSet common = {};
 
     [[nodiscard]] bool allTakePartIn(Effect effect) const noexcept {
@@ -71,38 +71,39 @@ public:
     using Point = Vector3<Scalar>;
     using Scene = ObservedScene<Scalar>;
 
-    /// Throws std::invalid_argument with effectsError(effects).
+    /// Throws std::invalid_argument with effectsError(effects), if not empty.
     explicit Observers(const SceneEffects& effects = {});
     ~Observers();
     Observers(const Observers&) = delete;
     Observers& operator=(const Observers&) = delete;
 
-    /// Changes the declaration. Frees tables of effects that are no longer declared. Other effects keep zones,
-    /// colours and view. The next frame has no late results, except of agents whose turn has not come. Throws as the
-    /// constructor, or std::bad_alloc. If it throws, nothing has changed.
+    /// Changes the declaration. Frees tables of effects that are no longer declared. Effects that stay declared keep
+    /// their zones, colours and view. The next frame has no late results, except for agents that wait for their turn.
+    /// Throws as the constructor, or std::bad_alloc. After an exception, nothing has changed.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
 
     // --- View, interest, zones and colours -------------------------------------------------------
 
-    /// Sets the volume that culling searches, usually a frustum. At first it is all of space. Needs Effect::culling.
+    /// Sets the volume that culling searches, usually a frustum. At first, the volume is all of space. Needs
+    /// Effect::culling.
     void setView(const ConvexRegion<Scalar>& view);
 
     /// Sets the position of the player [m]. Effects may find far objects late, as declared. The radar is around the
-    /// player. With std::nullopt, nothing is far, and the radar is around the origin.
+    /// player. If std::nullopt, nothing is far, and the radar is around the origin.
     void setInterest(const std::optional<Point>& interest) { interest_ = interest; }
     [[nodiscard]] const std::optional<Point>& interest() const noexcept { return interest_; }
 
-    /// Add, set and remove zones here. observe() calls Zones::update(). Needs Effect::zones.
+    /// Use the result to add, set and remove zones. observe() calls Zones::update(). Needs Effect::zones.
     [[nodiscard]] Zones<Scalar>& zones();
 
-    /// Sets the colour of the proxy with this index, at first 0. Needs Effect::proximity. Cost: O(1), and memory for
-    /// all lower indices.
+    /// Sets the colour of the proxy with this index. Colours are 0 at first. Needs Effect::proximity. Cost: O(1), and
+    /// memory for all lower indices.
     void setColour(std::uint32_t index, std::uint32_t colour);
 
-    /// Runs one frame. `moved` [m] is how far any corner of a box may have moved since the last frame (see
-    /// Culler::look()). Pass infinity if it is unknown, or if a proxy was added. Returns the cost.
+    /// Runs one frame. `moved` [m] is the largest distance that a corner of a box may have moved since the last frame
+    /// (see Culler::look()). Pass infinity if the distance is unknown, or a proxy was added. Returns the cost.
     const SceneCost& observe(const Scene& scene,
                              Scalar moved = std::numeric_limits<Scalar>::infinity(),
                              ParallelFor parallelFor = serialFor);
@@ -110,11 +111,12 @@ public:
     /// Forgets a removed proxy, so that a new proxy with the same index does not inherit its visibility and colour.
     void forget(std::uint32_t index) noexcept;
 
-    /// Call it before another grid replaces the observed grid, with equal indices but other generations. Proxies in a
-    /// zone then enter the zone again, without leaving.
+    /// Call it before you observe another grid that has equal indices but other generations. Proxies in a zone will
+    /// enter the zone again, and no event reports that they left.
     void forgetProxies() noexcept;
 
-    /// Calls `watch` with the effect's name after each phase, for a profiler. An empty function ends the calls.
+    /// Calls `watch` with the effect's name after each phase, for a profiler. To stop the calls, pass an empty
+    /// function.
     void watchPhases(std::function<void(std::string_view)> watch) { watch_ = std::move(watch); }
 
     // --- Results of the last frame ---------------------------------------------------------------
@@ -122,7 +124,7 @@ public:
     /// The visible set. Needs Effect::culling.
     [[nodiscard]] const Culler<Scalar>& culler() const;
 
-    /// Colours of agents, indexed by ProxyId::index. Beyond the end, colours are 0. Valid until the next frame or
+    /// Colours of agents, indexed by ProxyId::index. Colours beyond the end are 0. Valid until the next frame or
     /// setColour(). Needs Effect::proximity.
     [[nodiscard]] std::span<const std::uint32_t> colours() const;
 
@@ -132,17 +134,17 @@ public:
     /// Counts in the order of Radar::scan(). Valid until the next frame. Needs Effect::radar.
     [[nodiscard]] std::span<const std::uint32_t> radarCounts() const;
 
-    /// Cost of the last observe(), and of picks and selections between it and the previous observe().
+    /// Cost of the last observe(), and of picks and selections between the last two observe().
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
     // --- On request ------------------------------------------------------------------------------
 
-    /// As pickNearest(), among proxies that take part in picking. Needs Effect::picking.
+    /// As pickNearest(), but only finds proxies that take part in picking. Needs Effect::picking.
     [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray);
     [[nodiscard]] Picked<Scalar> pick(const Scene& scene, const RayRegion<Scalar>& ray,
                                       ExactTest<Scalar> test);
 
-    /// As hashphase::select(), among proxies that take part in box selection. Needs Effect::boxSelection.
+    /// As hashphase::select(), but only finds proxies that take part in box selection. Needs Effect::boxSelection.
     QueryCost select(const Scene& scene, const Camera<Scalar>& camera, const Pixel& a,
                      const Pixel& b, std::vector<ProxyId>& selected,
                      Containment containment = Containment::touching);
@@ -187,7 +189,7 @@ private:
         farewell_;  // effects in which proxies took part in the last frame, but no proxy does in this frame
     std::optional<Point> interest_;
     SceneCost cost_;   // of the last frame
-    SceneCost asked_;  // of picks and selections since that frame
+    SceneCost asked_;  // of picks and selections since the last frame
     std::function<void(std::string_view)> watch_;
 
     std::unique_ptr<Culling> culling_;

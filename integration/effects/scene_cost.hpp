@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The cost of a scene's frame in numbers, and the tables that a scene keeps. Each counter and table belongs to some
-// effects. It is exactly 0 if none of these effects is declared.
+// Counters of the work in a scene's frame, and the bytes of the scene's tables. Each counter and table belongs to one
+// or more effects (the table `bodies` to none), and is exactly 0 if none of these effects is declared.
 //
 //     const SceneCost& cost = simulation.advance(1.0F / 60);
 //     std::uint64_t born = cost[SceneCounter::pairsBorn];
 //
-// Threads  Values: any thread may use its own copies.
+// Threads  Values: each thread may use its own copies.
 
 #include <integration/effects/effect.hpp>
 #include <integration/effects/export.hpp>
@@ -25,7 +25,7 @@ inline constexpr EffectSet kGridEffects{
     Effect::proximity, Effect::zones,   Effect::radar,
 };
 
-/// The work of a frame. sceneCounters() lists the effects of each counter.
+/// The work of a frame. sceneCounters() returns the effects to which a counter belongs.
 enum class SceneCounter : std::uint8_t {
     // Bodies.
     bodiesMoved,      ///< bodies that moved by their velocities
@@ -47,7 +47,7 @@ enum class SceneCounter : std::uint8_t {
     contactsSolved,    ///< pairs of spheres that bounced
     sweepsSolved,      ///< bodies that swept a path
     sweepBoxesTested,  ///< boxes tested on the paths of swept bodies
-    sweepersStopped,   ///< swept bodies that hit a body they would have passed
+    sweepersStopped,   ///< swept bodies that hit a body instead of passing it
     // Picks and selections since the previous frame.
     picks,                 ///< picking rays
     pickBoxesTested,       ///< boxes tested for picking rays
@@ -57,7 +57,7 @@ enum class SceneCounter : std::uint8_t {
     viewsFound,          ///< 1 if the visible set was searched, 0 if it was kept
     cellRowsCulled,      ///< rows of cells read by culling
     cullingBoxesTested,  ///< boxes tested against the view
-    framesCulledLate,    ///< 1 if the set was not searched: CullingEffect::restingCameraFrames
+    framesCulledLate,    ///< 1 if restingCameraFrames skipped the search, so the set is old
     // Proximity.
     agentsScanned,     ///< agents that searched, and their possible neighbours
     neighboursTested,  ///< distances between agents tested
@@ -72,12 +72,12 @@ enum class SceneCounter : std::uint8_t {
     radarsLate,        ///< 1 if the counts are from an earlier frame
 };
 
-/// Tables of a scene. sceneTables() lists the effects of each table.
+/// Tables that hold a scene's data. sceneTables() returns the effects to which a table belongs.
 enum class SceneTable : std::uint8_t {
     bodies,      ///< positions, radii, and the effects that each body takes part in
     velocities,  ///< velocities of all bodies
     movers,      ///< list of awake bodies
-    sleepers,    ///< sleeping bodies, and how long other bodies have been slow
+    sleepers,    ///< sleep states of bodies, and their numbers of slow frames
     ground,      ///< triangles and their grid
     walkers,     ///< positions at which the ground is queried, and results
     proxies,     ///< ids of the bodies in the grid
@@ -94,14 +94,14 @@ enum class SceneTable : std::uint8_t {
     groups,      ///< the radar group of each body
 };
 
-/// A counter or table, and its effects.
+/// A counter or table, and the effects to which it belongs.
 struct SceneItem {
     std::string_view name;         ///< spelled like the enumerator: "bodiesMoved"
-    EffectSet owners;              ///< its effects; empty: every scene has the item
+    EffectSet owners;              ///< empty: every scene has the item
     std::string_view description;  ///< a few words in English
 };
 
-/// How many counters and tables there are.
+/// Number of counters, and number of tables.
 inline constexpr std::size_t kSceneCounterCount = 35;
 inline constexpr std::size_t kSceneTableCount = 18;
 
@@ -111,8 +111,8 @@ sceneCounters() noexcept;
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT const std::array<SceneItem, kSceneTableCount>&
 sceneTables() noexcept;
 
-/// One number for each Item (SceneCounter or SceneTable), of one frame or a sum. All numbers are 0 at first. The
-/// operators do not check for items beyond the last enumerator.
+/// One number for each Item (SceneCounter or SceneTable), of one frame or summed over frames. All numbers are 0 at
+/// first. Operator [] does not check that the item is valid.
 template <class Item, std::size_t count>
 class SceneNumbers {
 public:
@@ -134,10 +134,10 @@ private:
     std::array<std::uint64_t, count> numbers_{};
 };
 
-/// Costs of one frame or several, by counter.
+/// The value of each counter, for one frame or several.
 using SceneCost = SceneNumbers<SceneCounter, kSceneCounterCount>;
 
-/// Memory by table [bytes], capacity included: see Simulation::footprint().
+/// Memory of each table [bytes], capacity included: see Simulation::footprint().
 using SceneFootprint = SceneNumbers<SceneTable, kSceneTableCount>;
 
 /// Returns the sum over all tables [bytes].

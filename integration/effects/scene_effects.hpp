@@ -26,14 +26,14 @@ namespace hashphase {
 /// The largest value of settings that count frames.
 inline constexpr std::uint32_t kMostEffectFrames = 1'000'000;
 
-/// The largest finite length, and the smallest length that is not taken for 0 [m].
+/// The largest and smallest valid length [m], in settings that mention these limits.
 inline constexpr double kMostEffectLength = 1e30;
 inline constexpr double kLeastEffectLength = 1e-30;
 
 /// Bodies move by velocity * time step.
 struct MotionEffect {
-    /// Bodies whose centres would leave this box [m] turn back at its faces. By default the box is all of space.
-    /// Valid: min corner at most the max corner and kMostEffectLength; max corner at least -kMostEffectLength.
+    /// Bodies whose centres would leave this box [m] turn back at the box's faces. By default, the box is all of
+    /// space. Valid on each axis: min <= max, min <= kMostEffectLength, max >= -kMostEffectLength.
     Aabb<double> bounds{Vector3<double>::Constant(-std::numeric_limits<double>::infinity()),
                         Vector3<double>::Constant(std::numeric_limits<double>::infinity())};
 };
@@ -53,11 +53,11 @@ struct ResponseEffect {
     double restitution = 1;  ///< from 0 (no bounce) to 1 (no loss)
 };
 
-/// Fast bodies hit bodies on their paths. With response, they bounce off the first body. A body is fast if it moves
-/// by `fastFrom` diameters or more in a frame. Needs pairs and motion.
+/// Fast bodies hit bodies on their paths. If response is declared, they bounce off the first body. A body is fast if
+/// it moves by `fastFrom` diameters or more in a frame. Needs pairs and motion.
 struct SweepEffect {
     Sweep mode = Sweep::automatic;  ///< not Sweep::none
-    /// Diameters per frame, 0 or more. Above 0.5, slower bodies may pass through bodies thinner than themselves.
+    /// Diameters per frame, 0 or more. If above 0.5, slower bodies may pass through bodies thinner than themselves.
     double fastFrom = 0.5;
 };
 
@@ -69,7 +69,7 @@ struct SleepingEffect {
     std::uint32_t framesBeforeSleep = 30;  ///< number of frames below slowBelow
 };
 
-/// Bodies rotate, in Bullet. Otherwise bodies keep their orientation. Needs motion.
+/// Bodies rotate (only in Bullet). If undeclared, bodies keep their orientation. Needs motion.
 struct RotationEffect {};
 
 /// Friction between touching bodies in Bullet. Needs response.
@@ -83,10 +83,11 @@ struct BoxSelectionEffect {};
 
 /// Finds the proxies that a camera sees (culling/culler.hpp).
 struct CullingEffect {
-    /// Margin of the Culler [m], so that the visible set can be kept for several frames.
+    /// Margin of the Culler [m]. A margin allows the Culler to keep the visible set for several frames.
     double margin = 0;  ///< 0 to kMostEffectLength
-    /// While the camera does not move, the set is searched only in every n-th frame. In that case, proxies come into
-    /// view up to n - 1 frames late (SceneCounter::framesCulledLate). Removed proxies leave the set at once.
+    /// While the camera does not move, the set is searched only in every n-th frame. In that case, proxies that move
+    /// into view are found up to n - 1 frames late (SceneCounter::framesCulledLate). Removed proxies leave the set at
+    /// once.
     std::uint32_t restingCameraFrames = 1;
 };
 
@@ -97,7 +98,7 @@ struct ProximityEffect {
     double interestRadius =
         std::numeric_limits<double>::infinity();  ///< agents farther from the interest are far [m]
     std::uint32_t farFrames = 1;                  ///< far agents search only in every n-th frame
-    /// Agents search in turns: in each frame, one n-th of the agents. Without turns, neighbours change colour at the
+    /// Number n of turns: in each frame, one n-th of the agents search. If n is 1, neighbours change colour at the
     /// same time, perhaps to and fro in every frame. Far agents search in every farFrames-th turn.
     std::uint32_t turns = 1;
 };
@@ -109,8 +110,8 @@ struct ZonesEffect {
     std::uint32_t farFrames = 1;  ///< far zones are searched only in every n-th frame
 };
 
-/// Counts proxies in coarse cells around the interest, by group (ai/radar.hpp). Valid: columns * rows * groupCount
-/// from 1 to Radar::kMostCounts.
+/// Counts the proxies of each group in coarse cells around the interest (ai/radar.hpp). Valid: columns * rows *
+/// groupCount from 1 to Radar::kMostCounts.
 struct RadarEffect {
     double cellSize = 10;  ///< [m], kLeastEffectLength to kMostEffectLength
     std::uint32_t columns = 32;
@@ -142,8 +143,8 @@ struct HASHPHASE_EFFECTS_EXPORT SceneEffects {
     /// Returns the declared effects.
     [[nodiscard]] EffectSet set() const noexcept;
 
-    /// declare() declares the effect with default settings, unless it is declared already. remove() removes the
-    /// effect.
+    /// declare() adds the effect with default settings, or changes nothing if it is declared already. remove()
+    /// removes the effect.
     void declare(Effect effect);
     void remove(Effect effect);
 };
@@ -151,8 +152,8 @@ struct HASHPHASE_EFFECTS_EXPORT SceneEffects {
 /// Returns all effects that `effect` needs, directly or indirectly.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT EffectSet needsOf(Effect effect) noexcept;
 
-/// Returns the fault of the declaration in a sentence, with the remedy. Empty if there is no fault. Simulation and
-/// Observers throw std::invalid_argument with this sentence.
+/// Returns the fault of the declaration and the remedy, or an empty string if there is no fault. Simulation and
+/// Observers throw std::invalid_argument with this string.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string effectsError(const SceneEffects& effects);
 
 }  // namespace hashphase

@@ -11,9 +11,9 @@
 // Undeclared  An undeclared effect costs nothing, not even a branch in a loop. A call that needs an undeclared effect
 //             throws UndeclaredEffect. Rotation and friction run only in Bullet.
 // Exact       Only motion, terrain, response, sweep and sleeping decide the positions of bodies. Positions are equal
-//             to the last bit on any number of threads, whichever other effects are declared.
-// Bodies      A body takes part in its own effects, if they are declared. Without motion it stands still, and other
-//             bodies bounce off it. Without response it is a sensor.
+//             to the last bit for any number of threads, and for any other declared effects.
+// Bodies      A body takes part in its own effects, if they are declared. If it takes no part in motion, it stands
+//             still, and other bodies bounce off it. If it takes no part in response, it is a sensor.
 // Threads     Const members may run on several threads at once. During other calls, no other thread may use the
 //             simulation.
 // Failure     If memory runs out in advance(), some bodies may have moved. The next frame works, and reports all
@@ -44,7 +44,7 @@
 
 namespace hashphase {
 
-/// Identifies one body of one simulation. `index` is also its proxy's index.
+/// Identifies one body of one simulation. `index` is also the index of the body's proxy.
 struct BodyId {
     std::uint32_t index = 0;
     std::uint32_t generation = 0;
@@ -59,25 +59,25 @@ template <class Scalar>
 struct Body {
     Vector3<Scalar> position = Vector3<Scalar>::Zero();  ///< of the centre [m]
     Scalar radius = 1;                                   ///< [m]
-    Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  ///< [m/s]; ignored without motion
+    Vector3<Scalar> velocity = Vector3<Scalar>::Zero();  ///< [m/s], if motion is declared
     EffectSet effects = EffectSet::all();                ///< effects in which the body takes part
-    std::uint32_t group = 0;                             ///< radar group; ignored without radar
-    bool isAsleep = false;                               ///< at first; ignored without sleeping
+    std::uint32_t group = 0;                             ///< radar group, if radar is declared
+    bool isAsleep = false;                               ///< at first, if sleeping is declared
 };
 
-/// Runs frames of spheres, with the declared effects.
+/// Simulates spheres with the declared effects, frame by frame.
 template <class Scalar>
 class HASHPHASE_EFFECTS_TEMPLATE_EXPORT Simulation {
 public:
     using Point = Vector3<Scalar>;
 
-    /// Throws std::invalid_argument with simulationError(effects).
+    /// Throws std::invalid_argument with simulationError(effects), if not empty.
     explicit Simulation(const SceneEffects& effects = {});
     ~Simulation();
     Simulation(const Simulation&) = delete;
     Simulation& operator=(const Simulation&) = delete;
 
-    /// Changes the declaration. Makes and frees tables of effects. Bodies stay.
+    /// Changes the declaration. Makes tables of new effects, and frees tables of removed effects. Bodies stay.
     ///
     ///     motion     newly declared: all bodies stand still
     ///     sleeping   newly declared: all bodies are awake
@@ -87,8 +87,8 @@ public:
     ///     the grid   newly needed, or with another GridConfig: old ProxyIds are invalid, all pairs are reported as
     ///                born, and proxies in a zone enter the zone again
     ///
-    /// Throws std::invalid_argument with simulationError(effects), and changes nothing. Throws std::bad_alloc: in
-    /// that case nothing has changed, or the next advance() completes the change. Cost: at most as adding all bodies.
+    /// Throws std::invalid_argument as the constructor, and changes nothing. If it throws std::bad_alloc, nothing has
+    /// changed, or the next advance() completes the change. Cost: at most as adding all bodies.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }
@@ -110,14 +110,14 @@ public:
     [[nodiscard]] Scalar radius(BodyId id) const;
     [[nodiscard]] EffectSet effects(BodyId id) const;
 
-    /// The velocity [m/s]. setVelocity() wakes the body. Both functions need Effect::motion.
+    /// The velocity [m/s]. setVelocity() wakes the body. velocity() and setVelocity() need Effect::motion.
     [[nodiscard]] const Point& velocity(BodyId id) const;
     void setVelocity(BodyId id, const Point& velocity);
 
     /// Returns whether the body takes part in motion and is asleep. Needs Effect::sleeping.
     [[nodiscard]] bool isAsleep(BodyId id) const;
 
-    /// Moves the centre of the body to `position` [m] at once. The body wakes. It hits no bodies in between.
+    /// Moves the body's centre to `position` [m] at once. The body wakes, and hits no bodies on its path.
     void setPosition(BodyId id, const Point& position);
 
     /// Returns the body of a proxy; null if the proxy belongs to no body of this simulation.
@@ -126,16 +126,17 @@ public:
     // --- Scene -----------------------------------------------------------------------------------
 
     /// The triangles that bodies stand on. Needs Effect::terrain. Bodies that sleep on changed or removed triangles
-    /// stay asleep. Find these bodies by a ChangedGround, and wake each by setPosition() with its present position.
+    /// stay asleep. Find these bodies with a ChangedGround, and wake each body by setPosition() at its present
+    /// position.
     [[nodiscard]] Terrain<Scalar>& ground();
 
-    /// Set view, interest, zones and colours here, and read results. Bodies farther from the interest than
-    /// SleepingEffect::interestRadius sleep.
+    /// Use the observers to set view, interest, zones and colours, and to read results. Bodies farther from the
+    /// interest than SleepingEffect::interestRadius sleep.
     [[nodiscard]] Observers<Scalar>& observers() noexcept { return observers_; }
     [[nodiscard]] const Observers<Scalar>& observers() const noexcept { return observers_; }
 
-    /// The grid of all bodies, with their boxes in the last frame. Boxes are not updated while no body takes part in
-    /// any of kGridEffects. Needs one of kGridEffects.
+    /// The grid of all bodies, with their boxes in the last frame. Frames update boxes only while at least one body
+    /// takes part in one of kGridEffects. Needs one of kGridEffects.
     [[nodiscard]] const Grid<Scalar>& grid() const;
 
     // --- Frame -----------------------------------------------------------------------------------
@@ -143,20 +144,21 @@ public:
     /// Simulates `seconds` [s] in one step. Returns the cost.
     const SceneCost& advance(Scalar seconds, ParallelFor parallelFor = serialFor);
 
-    /// Cost of the last advance(), and of the calls between the previous advance() and it.
+    /// Cost of the last advance(), and of the calls between the last two advance().
     [[nodiscard]] const SceneCost& cost() const noexcept { return cost_; }
 
-    /// Names of a frame's phases, in order: "move", "pair", "respond", "observe" ...
+    /// Names of a frame's phases, in order, such as "move", "pair", "respond", "observe" ...
     [[nodiscard]] std::vector<std::string_view> phases() const;
 
-    /// Calls `watch` with the phase's name after each phase, for a profiler. Parts of "observe" are reported before
-    /// "observe", by the names of their effects. "observe" itself marks the rest. An empty function ends the calls.
+    /// Calls `watch` with the phase's name after each phase, for a profiler. In the phase "observe", also calls
+    /// `watch` after each observing effect, with its name. To stop the calls, pass an empty function.
     void watchPhases(std::function<void(std::string_view)> watch);
 
     /// Lets two bodies bounce if they touch and approach each other. Use it for pairs from another broadphase.
-    /// Returns whether they bounced; bodies without response never bounce. To replace the response effect with
-    /// results equal to the last bit, call it after advance() for all touching pairs, sorted by the bodies' indices.
-    /// `restitution`: see ResponseEffect. Needs Effect::motion. Asserted: the bodies differ. Cost: O(1).
+    /// Returns whether they bounced. If a body takes no part in response, it never bounces. To replace the response
+    /// effect, with results equal to the last bit, call collide() after advance() for all touching pairs, sorted by
+    /// the bodies' indices. `restitution`: see ResponseEffect. Needs Effect::motion. Asserted: the bodies differ.
+    /// Cost: O(1).
     bool collide(BodyId first, BodyId second, double restitution = 1);
 
     /// Births and deaths of pairs in the last frame. Valid until the next frame. Needs Effect::pairs.
@@ -167,7 +169,7 @@ public:
 
     // --- On request ------------------------------------------------------------------------------
 
-    /// As Observers::pick() and Observers::select(), among the bodies of this simulation.
+    /// As Observers::pick() and Observers::select(), for the bodies of this simulation.
     [[nodiscard]] Picked<Scalar> pick(const RayRegion<Scalar>& ray);
     QueryCost select(const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
                      std::vector<ProxyId>& selected,
@@ -176,8 +178,8 @@ public:
     /// Returns the bytes of each table, capacity included: exactly 0 for undeclared effects. Cost: O(zones).
     [[nodiscard]] SceneFootprint footprint() const;
 
-    /// Returns the first broken invariant in a sentence. Empty if all invariants hold. Call it after advance(). If a
-    /// body swept in that frame, pairs are not checked.
+    /// Returns the first broken invariant in a sentence, or an empty string if all invariants hold. Call it after
+    /// advance(). If a body swept in that frame, pairs are not checked.
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -206,7 +208,7 @@ private:
     [[nodiscard]] Aabb<Scalar> boxOf(std::size_t body) const {
         return boxAt(positions_[body], radii_[body]);
     }
-    /// Whether anything can change the velocity of the body.
+    /// Returns whether the velocity of the body can change.
     [[nodiscard]] bool isMovable(std::size_t body) const noexcept {
         return motion_ != nullptr && effectsOf_[body].contains(Effect::motion);
     }
@@ -267,18 +269,18 @@ private:
     detail::FixedList<Phase, 16> phases_;
     bool stockIsStale_ = true;
 
-    // Bodies by index; an even generation means no body.
+    // Indexed by BodyId::index; an even generation means no body.
     std::vector<Point> positions_;
     std::vector<Scalar> radii_;
     std::vector<EffectSet> effectsOf_;
     std::vector<std::uint32_t> generations_;
     std::vector<std::uint32_t> vacant_;  // free indices, if there is no grid to choose indices
-    std::vector<std::uint32_t> groups_;  // if radar is declared
+    std::vector<std::uint32_t> groups_;  // radar groups, if radar is declared
     std::size_t size_ = 0;
     EffectSet present_;  // effects in which some body takes part
     EffectSet common_;   // effects in which every body takes part
 
-    // Tables of effects.
+    // Tables of effects; null if not needed.
     std::unique_ptr<Motion> motion_;
     std::unique_ptr<Walkers> walkers_;
     std::unique_ptr<Sleep> sleep_;
@@ -288,18 +290,18 @@ private:
     std::unique_ptr<Sweepers> sweepers_;
     Observers<Scalar> observers_;
 
-    // The frame under way.
+    // The current frame.
     Scalar seconds_ = 0;
     const ParallelFor* parallelFor_ = nullptr;
-    Scalar farthestMove_ = 0;     // how far a corner of a box moved
-    bool changedOutside_ = true;  // since the last frame, by calls other than advance()
+    Scalar farthestMove_ = 0;     // largest distance that a corner of a box moved
+    bool changedOutside_ = true;  // changes since the last frame, by calls other than advance()
     SceneCost cost_;
     SceneCost between_;  // work since the last frame, part of the next frame's cost
     std::function<void(std::string_view)> watch_;
 };
 
-/// Returns the reason why a Simulation cannot run the declaration, in a sentence: effectsError(), or an effect that
-/// runs only in Bullet. Empty if a Simulation can.
+/// Returns the reason why a Simulation cannot run the declaration: effectsError(), or an effect that runs only in
+/// Bullet. Returns an empty string if a Simulation can.
 [[nodiscard]] HASHPHASE_EFFECTS_EXPORT std::string simulationError(const SceneEffects& effects);
 
 extern template class Simulation<float>;

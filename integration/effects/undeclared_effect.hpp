@@ -15,10 +15,10 @@ namespace hashphase {
 /// effect.
 class HASHPHASE_EFFECTS_EXPORT UndeclaredEffect : public std::logic_error {
 public:
-    /// `call` is the called function, such as "colours()".
+    /// `call` names the called function, such as "colours()".
     UndeclaredEffect(Effect effect, std::string_view call);
 
-    /// For a call that needs one of several effects: `oneOf`, which is not empty. effect() returns the first.
+    /// For a call that needs one of the effects in `oneOf` (not empty). effect() returns the first.
     UndeclaredEffect(EffectSet oneOf, std::string_view call);
 
     /// The effect to declare.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Picking in flat worlds: all objects stand on the ground, between two heights.
+// Picking in flat worlds, in which all objects are between two heights.
 //
 // Units     metres
-// Bad data  Results are empty for empty rays, and for heights that are NaN or inverted (low above high).
-// Source    The paper's pick for 2D grids takes the point at which the ray meets the ground, and misses tall objects
-//           in front of it. clipToHeights() follows the ray between the heights.
+// Bad data  Results are empty if the ray is empty, a height is NaN, or `low` is above `high`.
+// Source    In 2D grids, the paper picks at the point at which the ray meets the ground. This misses tall objects in
+//           front of the point. clipToHeights() keeps the ray between the heights.
 
 #include <broadphase/regions.hpp>
 #include <integration/camera/camera.hpp>
@@ -18,8 +18,9 @@
 
 namespace hashphase {
 
-/// Returns the part of a ray between the heights. Except for rounding, the part meets every box there that the whole
-/// ray meets. Its fractions count from its beginning. Empty if the ray is never between the heights.
+/// Returns the part of a ray between the heights. Except for rounding, this part meets every box between the heights
+/// that the whole ray meets. Fractions of the result count from its own start. Returns an empty ray if no part is
+/// between the heights.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT RayRegion<Scalar> clipToHeights(
     const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights);
@@ -30,8 +31,8 @@ template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT std::optional<Vector3<Scalar>> groundPoint(
     const RayRegion<Scalar>& ray, std::type_identity_t<Scalar> height = 0, UpAxis up = UpAxis::y);
 
-/// Returns the ground under a rectangle dragged on the screen (drag_selection.hpp, ground_footprint.hpp). To select
-/// objects, query its region(), which includes the air above the ground.
+/// Returns the footprint of a rectangle on the screen (drag_selection.hpp, ground_footprint.hpp). To select objects,
+/// query GroundFootprint::region(), which extends over all of `heights`.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline GroundFootprint<Scalar> dragFootprint(
     const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,

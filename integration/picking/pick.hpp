@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the proxies under the pointer, by their boxes or by your own exact test.
+// Finds the proxies under the pointer: tests their boxes, or calls your own exact test.
 //
-// Rays      Camera::rayThrough() makes a ray from a pixel. clipToHeights() (ground.hpp) shortens a ray to the heights
-//           of objects.
-// Order     Results are sorted from near to far, equally near proxies by id.
+// Rays      Camera::rayThrough() makes a ray from a pixel. clipToHeights() (ground.hpp) shortens a ray to a range of
+//           heights.
+// Order     Results are sorted from near to far. Equally near proxies are sorted by id.
 // Threads   Call from any thread while no thread changes the grid.
 // Bad data  An empty ray (RayRegion::isEmpty()) picks nothing. If an exact test returns NaN, a negative number, or
-//           more than the limit, the proxy is not hit.
+//           more than `limit`, the proxy is not hit.
 // Cost      Grid::visit() of the ray, one exact test for each box that the ray meets, and sorting. pickNearest()
-//           stops behind the nearest hit. pickAll() returns the cost, pickNearest() adds it to `cost`.
+//           stops at the nearest hit. pickAll() returns the cost. pickNearest() adds the cost to `cost`.
 
 #include <broadphase/function_ref.hpp>
 #include <broadphase/grid.hpp>
@@ -27,13 +27,13 @@ namespace hashphase {
 template <class Scalar>
 struct Picked {
     ProxyId id;                                       ///< isNull() if the ray meets nothing
-    Scalar fraction = 0;                              ///< of the ray's length, at the hit
+    Scalar fraction = 0;                              ///< distance to the hit / length of the ray
     Vector3<Scalar> point = Vector3<Scalar>::Zero();  ///< of the hit [m]
 };
 
-/// Returns where the ray meets the object of a proxy, as a fraction of the ray's length, or std::nullopt. The
-/// fraction must not be smaller than where the ray enters the proxy's box. The test may ignore hits beyond `limit`.
-/// Called only for proxies that the filter accepts and whose boxes the ray meets.
+/// Returns the fraction of the ray's length at which the ray meets the object of a proxy. Returns std::nullopt if
+/// there is no hit. The ray must not meet the object before the proxy's box. The test may ignore hits beyond the
+/// fraction `limit`. Called only for proxies that the filter accepts and whose boxes the ray meets.
 template <class Scalar>
 using ExactTest =
     FunctionRef<std::optional<Scalar>(ProxyId id, const RayRegion<Scalar>& ray, Scalar limit)>;
@@ -45,7 +45,7 @@ template <class Scalar>
                                                                   ProxyFilter filter = acceptAll,
                                                                   QueryCost* cost = nullptr);
 
-/// Returns the nearest proxy by the exact test. Does not call the test for boxes behind a hit.
+/// Returns the nearest proxy according to the exact test. Does not call the test for boxes beyond a hit.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT Picked<Scalar> pickNearest(
     const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,

@@ -13,8 +13,8 @@
 
 namespace hashphase {
 
-/// A ParallelFor: pairs.update(filter, hashphase::tbbFor). Idle threads sleep. Loops are split evenly. So each thread
-/// mostly reads what is still in its processor cache from an earlier loop.
+/// A ParallelFor: pairs.update(filter, hashphase::tbbFor). Idle threads sleep. Loops are split evenly. As a result, a
+/// thread mostly reads data that its processor cache holds from an earlier loop.
 inline void tbbFor(std::size_t count, std::size_t grain, LoopBody body) {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(grain, 1)),

@@ -4,15 +4,15 @@
 // Finds where the ground of a terrain has changed, and the proxies that may stand there. Wake them, or let them fall.
 //
 // Frame    Change the terrain, update the grids, call findStanding() for each grid with bodies, then call clear().
-//          Without clear(), the next findStanding() searches these places again. Before the update, findStanding()
-//          has equal results, but may cost as much as another update.
-// Boxes    This object keeps the boxes of added and removed triangles, and of replaced triangles before and after.
-//          Consecutive boxes whose union is a box are joined. Terrain::shiftOrigin() shifts the boxes.
+//          Until clear(), each findStanding() searches these places again. If you do not update a grid first, results
+//          are equal, but findStanding() may cost as much as an update.
+// Boxes    This object keeps the boxes of added and removed triangles, and the old and new boxes of replaced
+//          triangles. Consecutive boxes whose union is a box are joined. Terrain::shiftOrigin() shifts the boxes.
 // Memory   Allocated once, by the constructor. If the memory is full, every pair of consecutive boxes becomes one box
-//          around both. This may find more proxies, never fewer.
+//          around both. After that, findStanding() may find more proxies, never fewer.
 // Units    metres
-// Threads  Const functions may run on several threads at once. When the terrain changes, no other thread may use this
-//          object.
+// Threads  Const functions may run on several threads at once. While the terrain changes, no other thread may use
+//          this object.
 // Misuse   Asserted: `reach` is 0 or more (otherwise nothing is found), and the terrain outlives this object.
 
 #include <broadphase/grid.hpp>
@@ -35,7 +35,7 @@ class HASHPHASE_TERRAIN_TEMPLATE_EXPORT ChangedGround {
 public:
     using Box = Aabb<Scalar>;
 
-    /// Allocates `mostBoxes` boxes, at least 2, of 24 bytes each, or 48 in double precision.
+    /// Allocates `mostBoxes` boxes, at least 2. A box has 24 bytes, or 48 in double precision.
     explicit ChangedGround(Terrain<Scalar>& terrain, std::size_t mostBoxes = 16384);
     ~ChangedGround();
     ChangedGround(const ChangedGround&) = delete;
@@ -44,9 +44,9 @@ public:
     /// Boxes in which the ground has changed since clear(), in the order of changes.
     [[nodiscard]] std::span<const Box> boxes() const noexcept { return boxes_; }
 
-    /// Finds the proxies of any grid whose boxes touch one of boxes(), grown by `reach` [m] on all sides. Replaces
-    /// `standing`, sorted by id: each proxy once, without the terrain's own. Calls `filter` once for each found
-    /// proxy. Returns the cost. Cost: Grid::visit() for each of boxes(), and sorting the result.
+    /// Finds the proxies of any grid whose boxes touch one of boxes(), grown by `reach` [m] on all sides. Never finds
+    /// the terrain's triangles. Replaces `standing`: each proxy once, sorted by id. Calls `filter` once for each
+    /// found proxy. Returns the cost. Cost: Grid::visit() for each of boxes(), and sorting the result.
     QueryCost findStanding(const Grid<Scalar>& grid, std::type_identity_t<Scalar> reach,
                            std::vector<ProxyId>& standing, ProxyFilter filter = acceptAll) const;
 

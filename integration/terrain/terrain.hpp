@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The ground: static triangles in a grid. Finds the height of the ground below a point, and where a sphere rests.
+// The ground: static triangles in a grid. Finds the height of the ground below a point, and of a resting sphere.
 //
 // Frame     Change the ground, then query many points in one call. changed_ground.hpp finds the bodies on changed
 //           ground.
-// Numbers   A triangle keeps its number until it is removed. Later triangles may take the number. add() takes
-//           consecutive numbers: chunks of equal size reuse all free numbers, chunks of different sizes do not. A
-//           free number looks like a refused triangle: NaN corners, a zero normal, and the null proxy.
-// Grid      The grid may hold other proxies, and may change: this costs time, but results stay equal. Removed
-//           triangles have no effect on results.
+// Numbers   A triangle keeps its number until it is removed. Later triangles may get this number. add() assigns
+//           consecutive numbers. If all chunks have equal sizes, all free numbers are used again; otherwise, some are
+//           not. Free numbers and refused triangles have NaN corners, a zero normal and the null proxy.
+// Grid      The grid may contain other proxies, which may change. This costs time, but does not change results.
+//           Removed triangles have no effect on results.
 // Exact     A point on an edge or corner belongs to all triangles there, so a closed surface has no holes. Heights
 //           are computed in double precision.
 // Seams     Rounding may leave gaps between meshes with different transforms. A point in such a gap belongs to the
-//           highest triangle within seamTolerance(), unless a triangle exactly below has about that height.
+//           highest triangle within seamTolerance(), or to a triangle exactly below the point if that has about the
+//           same height.
 // Units     metres. Heights are coordinates along the up axis.
-// Threads   Queries are const: several threads may run them at once. During other calls, no other thread may use the
-//           terrain, its grid, or its ChangedGround.
-// Memory    Queries allocate only if a few points meet hundreds of boxes. If memory runs out in a change, the terrain
-//           stays unchanged.
-// Bad data  Triangles with a bad corner are refused and listed (see add()). Queries find no ground for bad points and
-//           radii.
-// Misuse    Asserted, and changes nothing: a number of corners that is no multiple of 3, spans of unequal lengths,
-//           numbers without a triangle, bad tolerances, more than 2^32 - 2 triangles.
+// Threads   Several threads may run queries (const functions) at once. During other calls, no other thread may use
+//           the terrain, its grid, or its ChangedGround.
+// Memory    Queries allocate only if hundreds of boxes are below a few points. If memory runs out during a change,
+//           the terrain stays unchanged.
+// Bad data  add() and replace() refuse and list triangles with a bad corner. Queries find no ground for bad points
+//           and radii.
+// Misuse    These fail an assertion and change nothing: a number of corners that is no multiple of 3, spans of
+//           unequal lengths, numbers that have no triangle, bad tolerances, more than 2^32 - 2 triangles.
 // Source    The object-terrain test of Hastings, Mesit and Guha for flat ground, extended to slopes and edges.
 
 #include <broadphase/core/compiler.hpp>
@@ -82,16 +83,16 @@ public:
 
     /// Keeps a reference to the grid, which must outlive the terrain.
     explicit Terrain(Grid<Scalar>& grid, UpAxis up = UpAxis::y);
-    /// Removes the terrain's proxies. Asserted: each ChangedGround of the terrain was destroyed before.
+    /// Removes the terrain's proxies. Asserted: each ChangedGround of the terrain was destroyed earlier.
     ~Terrain();
     Terrain(const Terrain&) = delete;
     Terrain& operator=(const Terrain&) = delete;
 
     // --- Triangles -------------------------------------------------------------------------------
 
-    /// Adds triangles, three corners [m] each, in either orientation. Refuses triangles with a corner that is NaN,
-    /// infinite or farther than kFarthest. Vertical triangles and triangles without an area carry spheres, but have
-    /// no height. The triangles take the lowest consecutive free numbers, or numbers from size() on. Allocates
+    /// Adds triangles, three corners [m] each, in either orientation. Refuses triangles with a coordinate that is
+    /// NaN, infinite or beyond kFarthest. Vertical triangles and triangles of zero area carry spheres, but have no
+    /// height. The triangles get the lowest consecutive free numbers. If too few are free, size() grows. Allocates
     /// nothing if enough triangles were removed before. Cost: O(triangles) amortised, and O(runs of free numbers).
     AddedTriangles add(std::span<const Point> corners);
 
@@ -99,24 +100,24 @@ public:
     /// last vertex.
     AddedTriangles add(std::span<const Point> vertices, std::span<const std::uint32_t> indices);
 
-    /// Replaces the corners of triangles from number `first` on with the given corners. Accepts and refuses triangles
-    /// as add() does. Triangles keep their numbers. Triangles also keep their proxies, unless they are refused now or
-    /// were before. Unchanged triangles are not filed again, and not recorded by ChangedGround. To change the number
-    /// of triangles, call remove() and add(). Allocates only if triangles are refused now or were before. Asserted:
-    /// no number is free. Cost: O(triangles given).
+    /// Replaces the corners of the triangles with numbers `first`, `first` + 1 and so on. Refuses triangles as add()
+    /// does. Triangles keep their numbers. A triangle keeps its proxy if it was accepted before and is accepted now.
+    /// Unchanged triangles cost no update of the grid, and ChangedGround does not record them. To change how many
+    /// triangles there are, call remove() and add(). Allocates only if a triangle is refused now or was before.
+    /// Asserted: none of the numbers is free. Cost: O(given triangles).
     AddedTriangles replace(std::uint32_t first, std::span<const Point> corners);
     AddedTriangles replace(std::uint32_t first, std::span<const Point> vertices,
                            std::span<const std::uint32_t> indices);
 
-    /// Removes `count` triangles from number `first` on, refused triangles too, and their proxies. Asserted: no
-    /// number is free. Cost: O(count), and O(runs of free numbers).
+    /// Removes `count` triangles from number `first` on, refused triangles too, and their proxies. Asserted: none of
+    /// the numbers is free. Cost: O(count), and O(runs of free numbers).
     void remove(std::uint32_t first, std::uint32_t count = 1);
 
-    /// Removes all triangles and their proxies. Numbers begin at 0 again.
+    /// Removes all triangles and their proxies. The next add() begins with number 0.
     void clear();
 
-    /// Subtracts `shift` [m] from all corners. Call it with every Grid::shiftOrigin() of the grid, with an equal
-    /// shift. Asserted: `shift` is finite. Cost: O(triangles).
+    /// Subtracts `shift` [m] from all corners. Call it together with every Grid::shiftOrigin() of the grid, with an
+    /// equal shift. Asserted: `shift` is finite. Cost: O(triangles).
     void shiftOrigin(const Point& shift);
 
     /// All numbers are below this limit: numbers of triangles, of refused triangles, and free numbers. Only clear()
@@ -135,7 +136,7 @@ public:
     [[nodiscard]] ProxyId proxy(std::uint32_t triangle) const;
 
     /// Returns the number of the triangle with this proxy, such as a proxy that a query found. Returns std::nullopt
-    /// if the proxy is not the terrain's. Cost: O(1).
+    /// if the terrain has no such proxy. Cost: O(1).
     [[nodiscard]] std::optional<std::uint32_t> triangleOf(ProxyId id) const noexcept {
         const std::uint32_t number = numberOf(id);
         return number != kNone && proxies_[number] == id ? std::optional(number) : std::nullopt;
@@ -143,19 +144,20 @@ public:
 
     // --- Seams -----------------------------------------------------------------------------------
 
-    /// Sets how far outside of all triangles a point may be [m] and still belong to a triangle. 0: such points belong
-    /// to none. std::nullopt, the default: automatic, see seamTolerance(). Set a tolerance if your corners were
-    /// computed from larger numbers than seamTolerance() knows, or if the tolerance must not depend on the present
-    /// triangles. Gaps up to twice the tolerance are closed; ledges extend outwards by the tolerance. clear() keeps
-    /// the setting. Asserted: 0 to kFarthest; otherwise nothing changes. Cost: O(1).
+    /// Sets the tolerance [m]: a point outside all triangles belongs to a triangle that is at most this far away. If
+    /// 0, such points belong to no triangle. If std::nullopt, the default, the tolerance is automatic: see
+    /// seamTolerance(). Set a tolerance if your corners were computed from larger numbers than seamTolerance()
+    /// assumes, or if the tolerance must not depend on the present triangles. Gaps up to twice the tolerance are
+    /// closed. Ledges extend outwards by the tolerance. clear() keeps the setting. Asserted: 0 to kFarthest; if not,
+    /// nothing changes. Cost: O(1).
     void setSeamTolerance(std::optional<Scalar> tolerance);
 
-    /// Returns the tolerance [m] at the point: the one you set, or the automatic one, by which rounding may move a
-    /// nearby edge. The automatic tolerance is 8 epsilon of Scalar times a sum of two lengths. The first length is
-    /// the point's larger coordinate along the ground. The second is the largest extent plus height of the triangles
-    /// of one add() or replace(), rounded up to a power of two, at most 16 km. It counts while any of these triangles
-    /// is left. Shifts of the origin do not lower the tolerance. In single precision it is 0.05 mm for chunks of 32 m
-    /// near the origin, and 1 mm at 1 km; in double precision 2 pm.
+    /// Returns the tolerance [m] at the point: the tolerance that you set, or the automatic tolerance, by which
+    /// rounding may move a nearby edge. The automatic tolerance is 8 epsilon of Scalar times the sum of two lengths.
+    /// The first length is the point's larger coordinate along the ground. The second length is the largest extent
+    /// plus height of all chunks (the triangles of one add() or replace()) that have triangles left, rounded up to a
+    /// power of two, at most 16 km. Shifts of the origin do not lower the tolerance. For chunks of 32 m in single
+    /// precision, the tolerance is 0.05 mm near the origin, and 1 mm at 1 km; in double precision 2 pm at 1 km.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
         return setTolerance_
                    ? *setTolerance_
@@ -166,27 +168,27 @@ public:
     // --- Queries ---------------------------------------------------------------------------------
 
     /// Returns the highest surface at or below the point [m], on the point's vertical line. Of equally high
-    /// triangles, returns the one with the smallest number. Returns std::nullopt outside of or below all triangles. A
-    /// query at the returned height returns that height again. Adds the query's cost to `cost`. Cost: Grid::visit()
-    /// of the line below the point.
+    /// triangles, returns the triangle with the smallest number. Returns std::nullopt if there is no such surface. A
+    /// query at the returned height returns the same height. Adds the query's cost to `cost`. Cost: Grid::visit() of
+    /// the line below the point.
     [[nodiscard]] Found surfaceBelow(const Point& point, QueryCost* cost = nullptr) const;
 
     /// Returns the height of the centre of a sphere that rests on the ground, and the triangle that carries the
-    /// sphere. The sphere may move only along the vertical line through `center` [m]. The result is the highest rest
-    /// whose contact point is at or below `center`: a bridge overhead does not count, and a sunken sphere is lifted.
-    /// On a slope with unit normal n, the result is the height of the ground + radius / n_up. Returns std::nullopt if
-    /// no triangle is below the sphere, within the radius, or the radius [m] is negative, NaN or above kFarthest.
-    /// Adds the query's cost to `cost`. Cost: Grid::visit() of the square column below the sphere.
+    /// sphere. The sphere may move only along the vertical line through `center` [m]. The result is the highest
+    /// position of rest whose contact point is at or below `center`: a bridge overhead does not count, and a sunken
+    /// sphere is lifted. On a slope with unit normal n, the result is the height of the ground + radius / n_up.
+    /// Returns std::nullopt if the sphere would fall past all triangles, or the radius [m] is negative, NaN or above
+    /// kFarthest. Adds the query's cost to `cost`. Cost: Grid::visit() of the square column below the sphere.
     [[nodiscard]] Found restingHeight(const Point& center, Scalar radius,
                                       QueryCost* cost = nullptr) const;
 
-    /// As surfaceBelow(), for many points: found[i] belongs to points[i]. Fastest if neighbouring points follow each
-    /// other. Returns the cost. Cost: at most as surfaceBelow() for each point. Uses 10 kB of stack, or 300 kB from
-    /// 1,024 points on.
+    /// As surfaceBelow(), for many points: found[i] belongs to points[i]. Fastest if neighbouring points are adjacent
+    /// in `points`. Returns the cost. Cost: at most as surfaceBelow() for each point. Memory: 10 kB of stack, or 300
+    /// kB for 1,024 or more points.
     QueryCost surfacesBelow(std::span<const Point> points, std::span<Found> found,
                             ParallelFor parallelFor = serialFor) const;
 
-    /// As restingHeight(), for many spheres: found[i] belongs to centers[i] and radii[i]. Otherwise as
+    /// As restingHeight(), for many spheres: found[i] belongs to centers[i] and radii[i]. Speed, cost and memory: as
     /// surfacesBelow().
     QueryCost restingHeights(std::span<const Point> centers, std::span<const Scalar> radii,
                              std::span<Found> found, ParallelFor parallelFor = serialFor) const;
@@ -209,12 +211,12 @@ private:
     static constexpr std::uint32_t kTilesPerSide = 128;
     static constexpr std::size_t kTiles = std::size_t{kTilesPerSide} * kTilesPerSide;
 
-    /// The tile of a point, in a grid of tiles over the whole ground.
+    /// Returns the tile of a point, in a grid of tiles over bounds_.
     [[nodiscard]] std::uint16_t tileOf(const Point& point) const noexcept {
         const auto along = [&](Eigen::Index axis) {
             constexpr auto last = static_cast<Scalar>(kTilesPerSide - 1);
             const Scalar tile = (point[axis] - bounds_.min()[axis]) * tilesPerMetre_[axis];
-            // In this order NaN becomes 0.
+            // This order of min and max makes NaN 0.
             return static_cast<std::uint32_t>(std::min(std::max(Scalar(0), tile), last));
         };
         return static_cast<std::uint16_t>(along(alongZ_) * kTilesPerSide + along(alongX_));
@@ -224,7 +226,7 @@ private:
     QueryCost searchInOrder(std::size_t count, const NumberOf& numberOf, std::span<Found> found,
                             ParallelFor parallelFor, const MakeSearch& makeSearch) const;
 
-    // Not inlined, so that calls with few points do not take its 300 kB of stack. (Clang reads this only here.)
+    // Not inlined: calls with few points must not use its 300 kB of stack. (Clang reads the attribute only here.)
     template <class Search, class MakeSearch>
     [[HASHPHASE_NO_INLINE]] QueryCost searchByTiles(std::span<const Point> points,
                                                     std::span<Found> found, ParallelFor parallelFor,
@@ -254,7 +256,8 @@ private:
     [[nodiscard]] Scalar along(const Point& point) const noexcept {
         return std::max(std::abs(point[alongX_]), std::abs(point[alongZ_]));
     }
-    /// Sets the column below the point. It extends `reach` to each side, which includes a margin for rounding.
+    /// Sets the vertical column below the point. The column extends `reach` [m] to each side. Add a margin for
+    /// rounding to `reach`.
     void setColumn(Aabb<Scalar>& column, const Point& point, Scalar reach) const noexcept {
         column.min() = point.array() - reach;
         column.max() = point.array() + reach;
@@ -262,27 +265,28 @@ private:
         column.max()[up_] = point[up_];
     }
 
-    /// The number of the proxy's triangle, or kNone if the proxy is not the terrain's.
+    /// Returns the number of the triangle whose proxy has this index, or kNone.
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t numberOf(ProxyId id) const noexcept {
         return id.index < triangleOfProxy_.size() ? triangleOfProxy_[id.index] : kNone;
     }
 
     Grid<Scalar>* grid_;
     int up_;
-    int alongX_;  // the other two axes
+    int alongX_;  // the axes along the ground
     int alongZ_;
-    // Around all triangles, and some removed triangles. Decides only the order in which many points are processed.
+    // A box around all triangles, and some removed triangles. Used only for the order in which many points are
+    // processed.
     Aabb<Scalar> bounds_;
-    Aabb<Scalar> nextBounds_;  // around triangles below boundsNext_, and newly set triangles
+    Aabb<Scalar> nextBounds_;  // around triangles with numbers below boundsNext_, and new triangles
     std::uint32_t boundsNext_ = 0;
     Point tilesPerMetre_ = Point::Zero();
     std::optional<Scalar> setTolerance_;
     detail::SeamGroups<Scalar> seamGroups_;
     detail::FreeRuns free_;
     std::vector<detail::GroundTriangle<Scalar>> triangles_;
-    std::vector<ProxyId> proxies_;  // by triangle; null for refused triangles
+    std::vector<ProxyId> proxies_;  // index: number of the triangle; null if refused
     std::vector<std::uint32_t>
-        triangleOfProxy_;  // by ProxyId::index; kNone if the proxy is not a triangle
+        triangleOfProxy_;  // index: ProxyId::index; kNone if the proxy is not a triangle
     std::vector<ChangedGround<Scalar>*> changed_;
 };
 
