@@ -154,7 +154,7 @@ void runWorlds(Run& run, std::initializer_list<std::string_view> names, int quic
                    world.name + " moves as under btSimpleBroadphase");
         if (run.isOurs) {
             for (const std::string& fault : faultsOf(outcomes[0], outcomes)) {
-                run.expect(false, fault);
+                run.expect(false, world.name + ": hashphase has no fault (" + fault + ")");
             }
         }
         run.note(story(outcomes[0]));

@@ -34,11 +34,11 @@ struct RolledWorld {
     }
     void save(WorldSnapshot& snapshot, Run& run) {
         const std::string fault = snapshot.save(physics.world(), broadphase());
-        run.expect(fault.empty(), fault);
+        run.expect(fault.empty(), "the world can be saved (" + fault + ")");
     }
     void restore(const WorldSnapshot& snapshot, const Returned& returned, Run& run) {
         const std::string fault = snapshot.restore(physics.world(), broadphase(), returned);
-        run.expect(fault.empty(), fault);
+        run.expect(fault.empty(), "the world can be restored (" + fault + ")");
     }
     [[nodiscard]] SpatialHashBroadphase& broadphase() {
         return static_cast<SpatialHashBroadphase&>(*physics.world().getBroadphase());
