@@ -61,7 +61,7 @@ int main() {
         picture[end] = '\n';
     }
     std::printf("%s", picture.c_str());
-    std::printf("drawn: %zu of %zu trees, %zu of them in vain, by %d tests of boxes\n",
+    std::printf("drawn: %zu of %zu trees, %zu of them drawn needlessly; boxes tested: %d\n",
                 culler.count(), grid.size(), culler.overdraw(grid).unseen,
                 static_cast<int>(cost.boxesTested));
 }
