@@ -47,7 +47,7 @@ TEST(DataTable, ShowsFourDigitsAndThousands) {
 
 TEST(DataTable, ShowsThreeDigitsOfTimesAndOfTheirRatios) {
     for (const char* title : {"frame [ms]", "median [ms a frame]", "time [ns/object]",
-                              "a look [us]", "a ray [times Bullet's]", "times as fast as dbvt"}) {
+                              "a query [us]", "a ray [times Bullet's]", "times as fast as dbvt"}) {
         EXPECT_EQ(cellText(12.3456, {"t", title}), "12.3") << title;
     }
     for (const char* title :
