@@ -44,7 +44,7 @@ void CaseTally::add(const CaseTally& other, std::string_view where) {
 CaseOutcome CaseTally::outcome() const {
     CaseOutcome outcome = sum_;
     for (const std::string& what : broken_) {
-        outcome.note += (outcome.note.empty() ? "Not so: " : " Not so: ") + what + ".";
+        outcome.note += (outcome.note.empty() ? "Not true: " : " Not true: ") + what + ".";
     }
     if (!isAsked_) {
         outcome.kind = OutcomeKind::nothing;

@@ -63,12 +63,12 @@ public:
 
     [[nodiscard]] std::string validate() const override {
         if (!isConsistent_) {
-            return "A pair is born that was one, or died that was none.";
+            return "A pair began while it existed, or ended while it did not exist.";
         }
         std::vector<ProxyPair> collected;
         pairs_.collect(collected);
         if (keysOf(collected) != known_) {
-            return "The pairs that were born and have not died are not those that are collected.";
+            return "collect() does not list the pairs that have begun and not ended.";
         }
         const std::string text = grid_.validate();
         return text.empty() ? pairs_.validate() : text;

@@ -33,7 +33,7 @@ using File = std::unique_ptr<std::FILE, CloseFile>;
 File temporaryFile() {
     File file(std::tmpfile());
     if (file == nullptr) {
-        throw std::runtime_error("No temporary file can be made.");
+        throw std::runtime_error("Cannot create a temporary file.");
     }
     return file;
 }
@@ -64,7 +64,7 @@ CaseOutcome readOutcome(std::FILE* file) {
     CaseOutcome outcome;
     CaseNumbers& numbers = outcome;
     if (std::fread(&numbers, sizeof numbers, 1, file) != 1) {
-        return outcomeOf(OutcomeKind::crashes, "It ended without an answer.");
+        return outcomeOf(OutcomeKind::crashes, "The process ended without an answer.");
     }
     outcome.note = textIn(file, 4000);
     return outcome;
@@ -118,7 +118,7 @@ bool waitFor(pid_t child, double wallSeconds, const std::function<void()>& while
 CaseOutcome crash(const std::string& how, std::FILE* said) {
     std::rewind(said);
     const std::string words = textIn(said, 600);
-    return outcomeOf(OutcomeKind::crashes, words.empty() ? how : how + " It said: " + words);
+    return outcomeOf(OutcomeKind::crashes, words.empty() ? how : how + " It printed: " + words);
 }
 
 CaseOutcome hang(double seconds, const char* ofWhat) {
@@ -137,7 +137,7 @@ CaseOutcome runIsolated(const std::function<CaseOutcome()>& work, const Isolatio
     const File said = temporaryFile();
     const pid_t child = fork();
     if (child < 0) {
-        throw std::runtime_error(std::string("No process can be made: ") + std::strerror(errno));
+        throw std::runtime_error(std::string("Cannot start a process: ") + std::strerror(errno));
     }
     if (child == 0) {
         runChild(work, limits.seconds, answer.get(), said.get());
@@ -150,12 +150,12 @@ CaseOutcome runIsolated(const std::function<CaseOutcome()>& work, const Isolatio
         return hang(limits.seconds, "processor time");
     }
     if (WIFSIGNALED(status)) {
-        return crash("It ended by signal " + std::to_string(WTERMSIG(status)) + " (" +
+        return crash("The process was ended by signal " + std::to_string(WTERMSIG(status)) + " (" +
                          strsignal(WTERMSIG(status)) + ").",
                      said.get());
     }
     if (WEXITSTATUS(status) != 0) {
-        return crash("It ended with status " + std::to_string(WEXITSTATUS(status)) + ".",
+        return crash("The process ended with status " + std::to_string(WEXITSTATUS(status)) + ".",
                      said.get());
     }
     return readOutcome(answer.get());

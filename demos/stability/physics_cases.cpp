@@ -95,7 +95,7 @@ std::vector<std::string> faultsOf(const PhysicsOutcome& ours, std::span<const Ph
     };
     if (const PhysicsOutcome* const exact = find(all, kSimpleName)) {
         check(ours.trajectoryHash == exact->trajectoryHash,
-              "It moves bodies otherwise than btSimpleBroadphase.");
+              "Bodies move differently than under btSimpleBroadphase.");
     }
     if (const PhysicsOutcome* const dbvt = find(all, kDbvtName)) {
         check(!isLater(ours.settleStep, dbvt->settleStep) &&
@@ -105,7 +105,7 @@ std::vector<std::string> faultsOf(const PhysicsOutcome& ours, std::span<const Ph
     const bool isFewest = std::all_of(all.begin(), all.end(), [&](const PhysicsOutcome& each) {
         return ours.tunnelled <= each.tunnelled;
     });
-    check(isFewest, "More bullets come through than under another broadphase.");
+    check(isFewest, "More bullets pass through walls than under another broadphase.");
     return faults;
 }
 

@@ -51,8 +51,10 @@ void noteRaysThroughBullet(CaseRun<Scalar>& run) {
          {std::pair(" -", outcome.missing), std::pair(" +", outcome.extra)}) {
         text += count > 0 ? sign + std::to_string(count) : "";
     }
-    run.note("By Grid::visit(). By its rayTest(), where Bullet's btRayAabb2() decides:" +
-             (text.empty() ? " exact" : text) + ".");
+    run.note(
+        "This outcome is for Grid::visit(). Outcome for rayTest(), which uses Bullet's "
+        "btRayAabb2():" +
+        (text.empty() ? " exact" : text) + ".");
 }
 
 /// What rays find, of ours asked by Grid::visit(), and of broadphases by rayTest(), which is to answer
@@ -138,7 +140,8 @@ private:
         scene_.grid()->visitEach(std::span(&region, 1), std::span(&together, 1));
         const LimitPause pause;
         run_.compare(found, exactOf(found));
-        run_.expect(together.sorted() == found, "rays find the same asked together");
+        run_.expect(together.sorted() == found,
+                    "visitEach() finds the same boxes as visit() for a ray");
         if (throughBullet) {
             if (fatness.min() == fatness.max() && !isLater_) {
                 run_.throughBullet.compare(*throughBullet, exactOf(*throughBullet));
@@ -148,7 +151,7 @@ private:
                                                           return scene_.subject().passesRayTest(
                                                               from, to, fatness, box);
                                                       }),
-                        "rayTest() answers as btRayAabb2() of each box");
+                        "rayTest() finds exactly the boxes that btRayAabb2() accepts");
         }
     }
 

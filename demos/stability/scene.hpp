@@ -212,7 +212,7 @@ public:
                      objectsThat(boxes_, [&](const Box& box) { return region.key(box) >= 0; }));
         NoteIndices<Scalar> together;
         grid()->visitEach(std::span(&region, 1), std::span(&together, 1));
-        run_.expect(together.sorted() == found, "queries find the same asked together");
+        run_.expect(together.sorted() == found, "visitEach() finds the same boxes as visit()");
         return cost;
     }
 

@@ -28,9 +28,9 @@ constexpr std::string_view kStabilityDeclaration =
 
 constexpr const char* kStabilityIntroduction =
     "hashphase is a spatial hash that replaces the broadphase of the Bullet physics engine. This "
-    "page shows hard cases, on which plain code goes wrong: NaN, borders of cells, endless rays, "
-    "crowds, high speeds, changes at the wrong moment. Each case ran with every broadphase, in a "
-    "process of its own. Brute force checked the answers.";
+    "page shows hard cases, on which simple code fails: NaN, cell borders, very long rays, crowds, "
+    "high speeds, changes during a query. Each case ran with every broadphase, in a separate "
+    "process. Brute force checked the answers.";
 
 // Ours is to end whatever the machine has to do beside it.
 constexpr double kPatienceWithOurs = 10;
@@ -64,16 +64,16 @@ void declareStability(CLI::App& app, StabilityOptions& options) {
         ->delimiter(',');
     app.add_flag("--quick", options.isQuick, "use smaller inputs: some seconds for all cases");
     app.add_flag("--explain", options.isExplained,
-                 "print the input of each case, what is required, and what each broadphase does");
+                 "print the input, the requirement and the outcomes of each case");
     app.add_option("--seed", options.seed, "seed of all random numbers")
         ->transform(seedUpTo())
         ->capture_default_str();
     app.add_option("--case-time-limit", options.caseSeconds,
-                   "seconds of processor time that a broadphase has for a case; hashphase has ten "
-                   "times as many")
+                   "seconds of processor time that a broadphase gets for each case; hashphase gets "
+                   "ten times this limit")
         ->transform(positiveSeconds())
         ->capture_default_str();
-    app.add_option("--time-limit", options.timeLimit, "begin no case after this many seconds")
+    app.add_option("--time-limit", options.timeLimit, "start no case after this many seconds")
         ->transform(positiveSeconds());
     addFileToWrite(app, "--json", options.jsonFile, "write all results to this file");
     addFileToWrite(app, "--csv", options.csvFile,
@@ -144,7 +144,7 @@ CaseOutcome runCase(const HardCase& hardCase, const BroadphaseKind& kind,
         grid.isQuick = true;
         grid.seed = options.seed;
         hardCase.inDouble(grid);
-        run.add(grid, ", in the grid alone in double precision");
+        run.add(grid, " (Grid<double> without Bullet)");
     }
     return run.outcome();
 }

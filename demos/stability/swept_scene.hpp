@@ -73,7 +73,7 @@ std::array<std::uint64_t, 3> judgeFrame(CaseRun<Scalar>& run, const SweptScene<S
             const auto [pairs, cost] = sweepOurs(frame, kModes[i], config);
             run.compare(pairs, exact);
             run.expect(cost.segments <= 40 * std::uint64_t{frame.movers},
-                       "a way has 40 segments at most");
+                       "a path has at most 40 segments");
             tests[i] = cost.boxesTested + cost.contactsTested;
         }
         return tests;

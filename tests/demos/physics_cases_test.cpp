@@ -79,7 +79,7 @@ TEST(PhysicsCases, NoticeAPairThatIsForgotten) {
                            }};
     const std::vector<PhysicsOutcome> outcomes = runPhysicsCase(world, 200, broadphases);
     const std::string faults = faultText(outcomes.front(), outcomes);
-    EXPECT_NE(faults.find("otherwise than btSimpleBroadphase"), std::string::npos);
+    EXPECT_NE(faults.find("differently than under btSimpleBroadphase"), std::string::npos);
     EXPECT_NE(faults.find("later than under btDbvtBroadphase"), std::string::npos);
     // It falls through the floor, which a measure by its own pairs would not see.
     EXPECT_GT(outcomes.front().worstPenetration, 10 * outcomes[1].worstPenetration);

@@ -316,7 +316,7 @@ TEST(Stability, TellsWhatGoesWrongInDoublePrecisionAlone) {
     const Typed printed = run({"--quiet"}, kinds, cases);
     EXPECT_EQ(printed.exitCode, kExitCheckFailed);
     for (const char* text :
-         {"H1 doubles: WRONG", "Not so: all is fine, in the grid alone in double precision."}) {
+         {"H1 doubles: WRONG", "Not true: all is fine (Grid<double> without Bullet)."}) {
         EXPECT_NE(printed.out.find(text), std::string::npos) << text << '\n' << printed.out;
     }
     EXPECT_EQ(lastLineOf(printed.out), "0 of 1 hard cases hold\n");
@@ -439,7 +439,7 @@ TEST(CaseTally, TellsExtraCostlyAndBroken) {
     EXPECT_EQ(costly.outcome().kind, OutcomeKind::costly) << "though it finds more than it should";
     costly.expect(false, "the sky is green");
     EXPECT_EQ(outcomeText(costly.outcome()), "wrong");
-    EXPECT_EQ(costly.outcome().note, "Not so: the sky is green.");
+    EXPECT_EQ(costly.outcome().note, "Not true: the sky is green.");
 }
 
 }  // namespace

@@ -98,14 +98,15 @@ void bodyBeyondBullet(Run& run) {
         judgeWorld(world, run);
     }
     run.expect(giant.getActivationState() == DISABLE_SIMULATION, "Bullet disables the large body");
-    run.expect(still.getActivationState() != DISABLE_SIMULATION, "a static one stays");
+    run.expect(still.getActivationState() != DISABLE_SIMULATION,
+               "Bullet keeps the large static body");
     if (run.isOurs) {
         // Bullet's bound is a diagonal of 1e6 m.
         const btRigidBody& large = world.add(1, 2.8e5F, {2e6F, 0, 0});
         world.step();
         judgeWorld(world, run);
         run.expect(large.getActivationState() != DISABLE_SIMULATION,
-                   "one that is just small enough stays");
+                   "Bullet keeps a body just below its size limit");
     }
 }
 
@@ -124,9 +125,10 @@ const PhysicsBroadphase* find(const std::vector<PhysicsBroadphase>& all, const R
 
 std::string story(const PhysicsOutcome& outcome) {
     const double millimetres = outcome.worstPenetration * 1000;
-    return outcome.scene + ": at most " + rounded(millimetres, 1) + " mm deep, " +
-           (outcome.settleStep < 0 ? "not at rest"
-                                   : "at rest after " + std::to_string(outcome.settleStep)) +
+    return outcome.scene + ": penetration at most " + rounded(millimetres, 1) + " mm, " +
+           (outcome.settleStep < 0
+                ? "not asleep at the end"
+                : "asleep after " + std::to_string(outcome.settleStep) + " steps") +
            ", energy +" + rounded(outcome.energyDrift, 2) + " J.";
 }
 
@@ -151,7 +153,7 @@ void runWorlds(Run& run, std::initializer_list<std::string_view> names, int quic
             outcomes.insert(outcomes.end(), others.begin(), others.end());
         }
         run.expect(outcomes[0].trajectoryHash == outcomes[1].trajectoryHash,
-                   world.name + " moves as under btSimpleBroadphase");
+                   world.name + ": every body moves as under btSimpleBroadphase");
         if (run.isOurs) {
             for (const std::string& fault : faultsOf(outcomes[0], outcomes)) {
                 run.expect(false, world.name + ": hashphase has no fault (" + fault + ")");
@@ -171,18 +173,20 @@ void massRatios(Run& run) {
 
 constexpr HardCase kBodyCases[] = {
     {"H4", "a dynamic body of 1.2e6 m",
-     "a world with five small bodies, a static one and a dynamic one of 1.2e6 m, three steps",
-     "Bullet disables the dynamic one as under any broadphase, keeps the static one; pairs exact",
+     "a world of five small bodies, a static body of 1.2e6 m and a dynamic body of 1.2e6 m; three "
+     "steps",
+     "Bullet disables the large dynamic body, as under any broadphase, and keeps the static body; "
+     "exact pairs",
      bodyBeyondBullet},
     {"H36", "a tower, a pyramid, a house of cards",
-     "the three worlds of bodies for as many steps as they take to come to rest (--quick: small "
-     "ones, 400 steps), over lists in an order that depends on the pairs alone",
-     "every body moves as under btSimpleBroadphase, to the last bit, and sleeps no later than "
+     "three worlds, for as many steps as their bodies need to fall asleep (--quick: small worlds, "
+     "400 steps); the order of the pair lists depends only on the pairs",
+     "every body moves as under btSimpleBroadphase, bit for bit, and falls asleep no later than "
      "under btDbvtBroadphase",
      piles},
     {"H37", "heavy bodies on light ones",
-     "mass ratios of 100 and 1,000, the heavy ones on top, over such lists",
-     "the solver's errors, and no others: every body moves as under btSimpleBroadphase",
+     "mass ratios of 100 and 1,000, the heavy bodies on top; pair lists in the order of H36",
+     "every body moves as under btSimpleBroadphase, bit for bit: all errors are the solver's",
      massRatios},
 };
 

@@ -138,8 +138,8 @@ constexpr auto multiplesOfTheCell = [](auto& run) {
         }
         ++sizes;
     }
-    run.note(std::to_string(borders) + " borders of each sign for " + std::to_string(sizes) +
-             " cell sizes.");
+    run.note(std::to_string(sizes) + " cell sizes, with " + std::to_string(borders) +
+             " borders in each direction.");
 };
 
 constexpr auto cornersOfCells = [](auto& run) {
@@ -172,21 +172,23 @@ constexpr auto cornersOfCells = [](auto& run) {
 
 constexpr HardCase kBorderCases[] = {
     {"H6", "points, plates and lines",
-     "boxes without extent on three, one and two axes, each twice, at the same places, and boxes "
-     "that touch them",
-     "closed boxes: what touches pairs", pointsAndPlates},
-    {"H7", "-0 and +0 as a border",
-     "boxes that end or begin at 0, in all 64 combinations of signs; then mirrored",
-     "-0 is +0: the same pairs, whatever the signs", signsOfZero},
+     "boxes of size 0 on three, two or one axes (points, lines and plates), each twice at the same "
+     "place, and boxes that touch them",
+     "boxes are closed: two boxes that touch are a pair", pointsAndPlates},
+    {"H7", "-0 and +0 as coordinates",
+     "boxes that end or begin at 0, with all 64 combinations of +0 and -0; then every second box "
+     "is mirrored at the origin",
+     "-0 equals +0: no sign of a zero changes a pair", signsOfZero},
     {"H8", "multiples of the cell size",
-     "for cells of 0.1, 0.2 ... 100 m (ours; some of them for the others, which have no cells), at "
-     "x = fl(k * cell), k = 0 ... 999 and the negatives, boxes that touch, overlap by an ulp, miss "
-     "by an ulp on either side, and boxes from one border to the next, along one axis after the "
-     "other; cells begin at 0",
+     "cells of 0.1, 0.2 ... 100 m (--quick: every 20th size); at the borders x = k * cell, "
+     "rounded, k = -999 ... 999, along one axis after the other, boxes that touch, overlap by an "
+     "ulp, or miss by an ulp on either side, and boxes from one border to the next; cells begin at "
+     "0; Bullet's broadphases, which have no cells, get some of these boxes",
      "exact pairs on both sides of every border", multiplesOfTheCell},
     {"H9", "eight boxes at a cell's corner",
-     "eight boxes that touch in the corner (k, k, k) of cells of 0.7 m, k = -1000 ... 999",
-     "each of the 28 pairs once", cornersOfCells},
+     "eight boxes that touch at the corner (k, k, k) of cells of 0.7 m, for eight values of k from "
+     "-1000 to 999",
+     "each of the 28 pairs at a corner once", cornersOfCells},
 };
 
 }  // namespace

@@ -40,7 +40,7 @@ constexpr auto duplicates = [](auto& run) {
         }
         scene.judge();
     }
-    run.expect(scene.reported().empty(), "all pairs have died");
+    run.expect(scene.reported().empty(), "all pairs have ended");
 };
 
 // --- By a hair ------------------------------------------------------------------------------------
@@ -85,7 +85,7 @@ void judgeMove(CaseRun<Scalar>& run, PairScene<Scalar>& scene) {
     for (const Vector3<Scalar>& end : {box.min(), box.max()}) {
         const Objects found = scene.touching({end, end});
         run.expect(std::count(found.begin(), found.end(), 0U) == 1,
-                   "a mover is found at both its ends");
+                   "point queries at the min and max corners of the moving cube find it");
     }
 }
 
@@ -110,7 +110,7 @@ void moveByTheMargin(CaseRun<Scalar>& run, int frames) {
         judgeMove(run, scene);
         const Vector3<Scalar> moved = scene.boxes()[0].min() - rest.min();
         run.expect(moved == by && scene.boxes()[0].max() - rest.max() == by,
-                   "no move by the margin is rounded");
+                   "moves by the margin are not rounded");
     }
 }
 
@@ -181,7 +181,7 @@ void approachAView(CaseRun<Scalar>& run, Scalar step, int frames) {
             }
         }
     }
-    run.expect(areAllSeen && visible > 0, "what comes into view by a hair is seen");
+    run.expect(areAllSeen && visible > 0, "a box that enters the view by a tiny step is visible");
 }
 
 constexpr auto smallMoves = [](auto& run) {
@@ -291,23 +291,26 @@ constexpr auto randomChanges = [](auto& run) {
         run.compare(scene.reported(), truth.pairs());
     }
     scene.expectValid();
-    run.note(std::to_string(changes) + " changes, compared after each.");
+    run.note(std::to_string(changes) + " changes; the pairs were compared after each change.");
 };
 
 constexpr HardCase kChurnCases[] = {
     {"H33", "one pair in many cells",
-     "30 cubes of 0.9 to 20 m in each other, cells of 1, 4 and 16 m: pairs that share up to 8 "
-     "cells and span 3 levels",
-     "each pair once; born once, died once", duplicates},
-    {"H34", "moves by a margin, again and again",
-     "a cube that moves by 5 cm and back, by 1 ulp less and 1 ulp more, and across by 1 ulp at a "
-     "time, to where boxes begin, along each axis, both ways; one that moves on by 5 cm, past "
-     "others; 10,000 frames each (--quick: 1,000); btDbvtBroadphase fattens boxes by 5 cm",
-     "exact pairs, and a mover that is found at both its ends, in every frame", smallMoves},
-    {"H35", "changes at random",
-     "1,000,000 (--quick: 20,000; a fiftieth of it for the others) creations, moves and removals "
-     "of 40 boxes, among them points, large and far ones, and such as touch exactly",
-     "the pairs of brute force after each", randomChanges},
+     "30 cubes of 0.9 to 20 m that all overlap, in cells of 1, 4 and 16 m; a pair shares up to 8 "
+     "cells and spans 3 levels; then hashphase's cubes move apart",
+     "each pair is reported once, begins once and ends once", duplicates},
+    {"H34", "repeated moves by a margin",
+     "btDbvtBroadphase enlarges boxes by 5 cm. Next to other boxes, a cube moves by 5 cm, 5 cm - 1 "
+     "ulp and 5 cm + 1 ulp, and then by 1 ulp per frame around 5 cm, in both directions along each "
+     "axis. Another cube moves on by 5 cm in each frame, past other cubes. 10,000 frames each "
+     "(--quick: 1,000). For hashphase, boxes also move into a culled region by tiny steps",
+     "in every frame, exact pairs; point queries at the min and max corners of the moving cube "
+     "find it",
+     smallMoves},
+    {"H35", "random changes",
+     "1,000,000 (--quick: 20,000) creations, moves and removals of 40 boxes, for Bullet's "
+     "broadphases 1/50 of that; some boxes are points, large, or far away, and some only touch",
+     "after each change, exactly the pairs that brute force finds", randomChanges},
 };
 
 }  // namespace

@@ -66,13 +66,14 @@ void judgeMuchTooLargeCells(CaseRun<Scalar>& run) {
     PairScene<Scalar> fitting(run, boxes);
     fitting.judge();
     run.expect(fitting.cost().boxesTested < 10 * kCount && fitting.cost().grid.largestCell < 50,
-               "in cells of its size, a crowd is none");
+               "cells of a fitting size hold few boxes");
     addAnchors(boxes);
     PairScene<Scalar> inOneCell(run, boxes, {.cellSize = 1e4});
     inOneCell.judge();
     run.expect(static_cast<double>(inOneCell.cost().boxesTested) <= 1.5 * alongAnAxis,
-               "a crowd costs what sweeping along an axis does");
-    run.expect(inOneCell.cost().grid.largestCell >= 100'000, "the crowd is told");
+               "a crowd costs at most 1.5 times a sweep along one axis");
+    run.expect(inOneCell.cost().grid.largestCell >= 100'000,
+               "the cost includes the size of the crowded cell");
 }
 
 /// A long box is tested with everyone, and makes nobody else slower. Three crowds are each flat along
@@ -89,7 +90,7 @@ void judgeUnevenCrowds(CaseRun<Scalar>& run) {
     PairScene<Scalar> withLong(run, boxes, {.cellSize = 1e4});
     withLong.judge();
     run.expect(withLong.cost().boxesTested <= even.cost().boxesTested + 4 * kCount,
-               "a long box makes nobody else slower");
+               "long boxes add only tests of their own");
 
     Random random(run.seed);
     Boxes<Scalar> flat;
@@ -102,7 +103,8 @@ void judgeUnevenCrowds(CaseRun<Scalar>& run) {
     }
     PairScene<Scalar> inPlanes(run, flat, {.cellSize = 1000});
     inPlanes.judge();
-    run.expect(inPlanes.cost().boxesTested < 200 * kCount, "each crowd has an axis of its own");
+    run.expect(inPlanes.cost().boxesTested < 200 * kCount,
+               "each crowd is sorted along an axis that suits it");
 }
 
 /// Queries want a few of a crowd, of whom some have left, or moved, since they were sorted.
@@ -128,7 +130,7 @@ void judgeQueriesInACrowd(CaseRun<Scalar>& run) {
         cost += scene.judgeQuery(SphereRegion<Scalar>{pointIn<Scalar>(random, 0, 100), 3});
     }
     run.expect(cost.hits > kQueries && cost.boxesTested < kQueries * kCount / 8,
-               "a crowd is searched along an axis");
+               "a query tests a small part of a crowd");
 }
 
 constexpr auto oneCell = [](auto& run) {
@@ -141,8 +143,9 @@ constexpr auto oneCell = [](auto& run) {
         return;
     }
     run.addCost(static_cast<double>(scene.cost().boxesTested) / testsAlongAnAxis(boxes), 1.25);
-    run.note("Cost: boxes tested, by those that sorting along an axis leaves.");
-    run.expect(scene.cost().grid.largestCell >= count / 2, "the crowd is told");
+    run.note("Cost: boxes tested, divided by the boxes that a sweep along x tests.");
+    run.expect(scene.cost().grid.largestCell >= count / 2,
+               "the cost includes the size of the crowded cell");
     judgeMuchTooLargeCells(run);
     judgeUnevenCrowds(run);
     judgeQueriesInACrowd(run);
@@ -173,8 +176,9 @@ double bytesPerPair(CaseRun<Scalar>& run, std::size_t count) {
         scene.judge();
         bytesThen[i] = scene.subject().memoryBytes();
     }
-    run.expect(bytesThen[2] <= bytesThen[0], "memory does not grow with time");
-    run.expect(static_cast<double>(bytes) < 200 * pairs, "a pair takes 200 bytes at most");
+    run.expect(bytesThen[2] <= bytesThen[0],
+               "memory does not grow when the boxes meet and part again");
+    run.expect(static_cast<double>(bytes) < 200 * pairs, "a pair takes less than 200 bytes");
     return static_cast<double>(bytes) / pairs;
 }
 
@@ -183,8 +187,8 @@ constexpr auto allTheSame = [](auto& run) {
     const double many = bytesPerPair(run, count);
     if (run.isOurs) {
         run.addCost(many / bytesPerPair(run, count / 2), 2);
-        run.note("Cost: bytes held for each pair, " + rounded(many, 0) +
-                 ", by those of half as many boxes.");
+        run.note("Cost: bytes per pair (" + rounded(many, 0) +
+                 "), divided by the bytes per pair of half as many boxes.");
     }
 };
 
@@ -229,10 +233,10 @@ void expectMostIsRefused(CaseRun<Scalar>& run) {
         run.expect(
             refusal ==
                 "A grid holds at most 268,435,456 proxies. Remove some, or use another grid.",
-            "more than there may be are refused in a sentence");
+            "reserve() refuses too many proxies, with the expected message");
     }
     run.expect(grid.size() == 1 && grid.contains(id) && grid.validate().empty(),
-               "the grid is as it was");
+               "a refused reserve() leaves the grid unchanged");
 }
 
 constexpr auto beyond32Bits = [](auto& run) {
@@ -256,12 +260,12 @@ constexpr auto beyond32Bits = [](auto& run) {
                 isTold = true;
             }
         }
-        run.expect(isTold, "what does not fit is refused with std::bad_alloc");
+        run.expect(isTold, "std::bad_alloc is thrown when memory runs out");
         // Apart again, all goes on.
         scene.moveAll(apart);
         scene.judge();
     } else {
-        run.note("Memory cannot run out here, as under a sanitizer.");
+        run.note("Memory cannot be limited here, for example under a sanitizer.");
     }
     if (run.isOurs) {
         if constexpr (std::is_same_v<Scalar, float>) {
@@ -272,15 +276,19 @@ constexpr auto beyond32Bits = [](auto& run) {
 };
 
 constexpr HardCase kCrowdCases[] = {
-    {"H25", "100,000 in one cell",
-     "200,000 (--quick: 20,000) cubes of 8 mm in a cubic metre, half of them in one cell",
-     "exact pairs; no more work than sorting along an axis; the cost names the crowd", oneCell},
-    {"H26", "2,000 at one place", "2,000 (--quick: 600) times the same cube of 1 m",
-     "1,999,000 pairs, each once; memory in proportion to them", allTheSame},
-    {"H45", "more than memory and 32 bits hold",
-     "8,000 in a row, each touching the next, all moved to one place with 64 MiB of memory left "
-     "for 32 million pairs, and back; 4.9e9 neighbours to be counted (--quick: 4.4e9)",
-     "an error that the caller can catch, and exact pairs afterwards; counts that do not wrap",
+    {"H25", "100,000 boxes in one cell",
+     "200,000 cubes of 8 mm (--quick: 20,000) in one cubic metre, half of them in one cell",
+     "exact pairs; at most 1.25 times the box tests of a sweep along one axis; the reported cost "
+     "includes the size of the largest cell",
+     oneCell},
+    {"H26", "2,000 boxes at one place", "2,000 identical cubes of 1 m (--quick: 600)",
+     "1,999,000 pairs, each once; memory proportional to the number of pairs", allTheSame},
+    {"H45", "out of memory; counts over 32 bits",
+     "8,000 boxes in a row, each touching the next; with 64 MiB of memory left, all move to one "
+     "place, where they form 32 million pairs, and then back; for hashphase also a count of 4.9e9 "
+     "neighbours (--quick: 4.4e9)",
+     "an exception that the caller can catch, and exact pairs afterwards; counts that do not "
+     "overflow",
      beyond32Bits},
 };
 

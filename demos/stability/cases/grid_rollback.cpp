@@ -149,15 +149,16 @@ constexpr auto changesTakenBack = [](auto& run) {
         }
         run.compare(equal, all);
     }
-    run.note("Back to another frame " + std::to_string(2 * rounds) + " times.");
+    run.note("A saved state was restored " + std::to_string(2 * rounds) + " times.");
 };
 
 constexpr HardCase kRollbackCases[] = {
-    {"H46", "changes at random, taken back",
-     "120 boxes that come, move and go, some of them fast; 60 frames, saved before each; back to "
-     "any of them 200 times (--quick: 15), and ten frames again; then the same with sweeps",
-     "each frame tells the same as the first time, in the same order, with the same ids; the pairs "
-     "of brute force",
+    {"H46", "random changes, rolled back",
+     "120 boxes that are created, moved and removed in 60 frames, and saved before each frame; 200 "
+     "times (--quick: 15 times), one of these states is restored, and the next ten frames are "
+     "repeated; then all of it again with sweeps",
+     "each repeated frame reports the same pair changes as the first time, in the same order, with "
+     "the same ids; without sweeps, exact pairs",
      changesTakenBack},
 };
 

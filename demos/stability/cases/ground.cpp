@@ -108,7 +108,8 @@ void judgeGround(CaseRun<Scalar>& run, const std::vector<Probe<Scalar>>& probes,
     for (const Vector3<double>& outside :
          {Vector3<double>(-0.001, 50, 5), Vector3<double>(1e6, 50, 5),
           Vector3<double>(5, 50, 48.001), Vector3<double>(5, -5, 5)}) {
-        run.expect(!below(outside.cast<Scalar>()), "there is no ground outside and below");
+        run.expect(!below(outside.cast<Scalar>()),
+                   "no ground is found outside the terrain, or from below it");
     }
 }
 
@@ -125,29 +126,33 @@ constexpr auto ground = [](auto& run) {
     const std::vector<Probe<Scalar>> probes = probesOnEdges(hills, count, run.seed);
     if (isBulletsWay) {
         judgeGround(run, probes, run.make({worldOf<Scalar>({}), 0})->groundOf(hills.corners));
-        run.note("A ray down through a btBvhTriangleMeshShape, under any broadphase.");
+        run.note(
+            "The query is a vertical ray through a btBvhTriangleMeshShape; no broadphase is used.");
         return;
     }
     Grid<Scalar> grid;
     Terrain<Scalar> terrain(grid);
     terrain.add(hills.corners);
     const std::array bad{Point(0, 0, 0), Point(kNan<Scalar>, 0, 0), Point(0, 0, 1)};
-    run.expect(terrain.add(bad).refused.size() == 1, "a triangle with NaN is refused and named");
+    run.expect(terrain.add(bad).refused.size() == 1, "a triangle with NaN is refused and listed");
     judgeGround(run, probes, [&](const Point& point) -> std::optional<double> {
         const auto below = terrain.surfaceBelow(point);
         return below ? std::optional(static_cast<double>(below->height)) : std::nullopt;
     });
     for (const Point& nowhere : {Point(kNan<Scalar>, 0, 0), Point(0, kNan<Scalar>, 0)}) {
-        run.expect(!terrain.surfaceBelow(nowhere), "there is no ground below NaN");
+        run.expect(!terrain.surfaceBelow(nowhere), "no ground is found below a point with NaN");
     }
 };
 
 constexpr HardCase kGroundCases[] = {
     {"H40", "points on the edges of triangles",
-     "a million points (--quick: 20,000) exactly on edges, diagonals and corners of 4,608 "
-     "triangles; among these a point, an edge, one without area, a vertical one, ten twice; points "
-     "outside; in ours one with NaN",
-     "ground below each point on an edge, at its height; none outside", ground},
+     "a million points (--quick: 20,000) exactly above edges, diagonals and corners of 4,608 "
+     "triangles; also four degenerate triangles (a point, an edge, three points on a line, a "
+     "vertical triangle), ten triangles added twice, and points outside; for hashphase also a "
+     "triangle with NaN",
+     "the ground below each point, at its height; no ground outside the terrain, or for a point "
+     "below it",
+     ground},
 };
 
 }  // namespace

@@ -43,7 +43,7 @@ bool judgeFarAlong(CaseRun<Scalar>& run, Scalar length, const Vector3<Scalar>& s
         }
     }
     if (scene.isOurs()) {
-        run.note("Cost: blocks of boxes read for each box that is there.");
+        run.note("Cost: blocks of boxes read, divided by the number of boxes.");
     }
     noteRaysThroughBullet(run);
     return scene.isOurs();
@@ -149,7 +149,8 @@ void judgeScaledUp(CaseRun<Scalar>& run, double scale) {
             isNoneFar &= !isFound || lattice.meets(from, to, boxes[k], pointBox<Scalar>(),
                                                    4 * kDoubt<Scalar> * length);
         }
-        run.expect(areAllFound && isNoneFar, "a ray finds what it meets however long it is");
+        run.expect(areAllFound && isNoneFar,
+                   "a very long ray finds all boxes that it meets, and no distant box");
     }
 }
 
@@ -185,15 +186,20 @@ constexpr auto tooLongForSquares = [](auto& run) {
 
 constexpr HardCase kLongRayCases[] = {
     {"H16", "a ray through 3.4e7 cells",
-     "cells of 1 m, a ray of 3.4e7 m there and back, 201 boxes of 8 m on it, as many 1 km aside",
-     "all hits; the work follows the boxes that there are, not the cells", manyCells},
+     "cells of 1 m; a slanting ray, 3.4e7 m long along x, cast in both directions; 201 boxes of 8 "
+     "m on the ray, and 201 boxes 1 km beside it",
+     "all hits; the cost depends on the number of boxes, not on the number of cells", manyCells},
     {"H17", "a ray through 1e5 cells",
-     "cells of 1 m, a slanting ray of 1e5 m there and back, 201 boxes of 8 m on it, as many 12 m "
-     "aside",
-     "all hits, up to the end; the work follows the boxes", hundredThousandCells},
+     "cells of 1 m; a slanting ray, 1e5 m long along x, cast in both directions; 201 boxes of 8 m "
+     "on the ray, and 201 boxes 12 m beside it; for hashphase also 11 rays through boxes of 1 m "
+     "that fill all cells around them",
+     "all hits, up to the end of the ray; the cost depends on the number of boxes, not on the "
+     "number of cells",
+     hundredThousandCells},
     {"H18", "rays of 1e18 to 1e38 m",
-     "rays along the axes, as long as that, whose squared lengths overflow; 201 boxes",
-     "what the segment meets", tooLongForSquares},
+     "201 boxes; rays along each axis, 1e18, 1e19, 1e25 and 1e38 m long: squares of the last two "
+     "overflow in single precision; for hashphase also long slanting rays",
+     "the boxes that the segment meets", tooLongForSquares},
 };
 
 }  // namespace

@@ -127,20 +127,20 @@ constexpr auto endlessPlane = [](auto& run) {
     const double ratio = time(with) / time(without);
     if (with.scene.grid() == nullptr) {
         run.addCost(ratio, 3);
-        run.note("Cost: the time of a frame with the plane, by that without.");
+        run.note("Cost: time of a frame with the plane, divided by the time without the plane.");
         return;
     }
     addWork(with, without);
     run.note(
-        "Cost: boxes tested in a frame, less one for each pair with the plane. With the plane, a "
-        "frame takes " +
+        "Cost: boxes tested in a frame with the plane (minus one for each pair with the plane), "
+        "divided by the boxes tested without the plane. With the plane, a frame takes " +
         rounded(ratio, 1) + " times as long.");
     for (const double cellSize : {0.0, 1.0}) {
         PlaneWorld<Scalar> first(run, count, true, cellSize);
         PlaneWorld<Scalar> alone(run, count, false, cellSize);
         first.scene.judge();
         alone.scene.judge();
-        run.expect(first.scene.cost().grid.filed == count + 1, "the plane is filed once");
+        run.expect(first.scene.cost().grid.filed == count + 1, "the plane is stored once");
         addWork(first, alone);
     }
 };
@@ -172,7 +172,7 @@ constexpr auto nanInOneField = [](auto& run) {
             scene.judge();
         }
         if (scene.grid() != nullptr) {
-            run.expect(scene.grid()->nanCount() == 1, "NaN boxes are counted");
+            run.expect(scene.grid()->nanCount() == 1, "the grid counts the boxes with NaN");
             run.expect(messages.count() == 1, "NaN is reported once");
         }
     }
@@ -234,15 +234,15 @@ void expectCellsBeyond32Bits(CaseRun<Scalar>& run) {
         NoteIndices<Scalar> found;
         grid.visitCell({0, 0, cell}, found);
         run.expect(cells.lowest[2] == cell && cells.highest[2] == cell && found.found.size() == 1,
-                   "cells have numbers beyond 32 bits");
+                   "cell indices can exceed 32 bits");
     }
     constexpr std::int64_t kLast = 9'000'000'000'000'000'000;
     run.expect(grid.cellAt(Vector3<Scalar>(Scalar(1e30), Scalar(-1e30), 0)) ==
                    std::array<std::int64_t, 3>{kLast, -kLast, 0},
-               "there is a last cell");
+               "cell indices end at +-9e18");
 }
 
-constexpr auto cellNumbersThatOverflow = [](auto& run) {
+constexpr auto largeCellIndices = [](auto& run) {
     using Scalar = ScalarOf<decltype(run)>;
     using Point = Vector3<Scalar>;
     const auto cornerAt = [](int corner, Scalar far) {
@@ -273,26 +273,27 @@ constexpr auto cellNumbersThatOverflow = [](auto& run) {
 };
 
 constexpr HardCase kNumberCases[] = {
-    {"H1", "coordinates beyond any cell",
-     "60 boxes around the origin, cells of 1 m, and boxes at or reaching to 3e9, 1e18, infinity "
-     "(each sign) and NaN, on one axis and on all; automatic cells too",
-     "pairs as comparing the coordinates says; no conversion overflows", hugeCoordinates},
+    {"H1", "huge, infinite and NaN coordinates",
+     "60 boxes around the origin; boxes that lie at or extend to +-3e9, +-1e18, +-infinity and "
+     "NaN, on one axis or on all axes; cells of 1 m, and of automatic size",
+     "exact pairs, by comparing the coordinates; no conversion overflows", hugeCoordinates},
     {"H2", "a plane of 1e18 m",
-     "btStaticPlaneShape's box, +-1e18 m on all axes (+-1e30 in double precision), below boxes "
-     "that all move",
-     "the plane pairs once with everyone, and costs no more than its pairs", endlessPlane},
+     "a box as of btStaticPlaneShape, from -1e18 to 1e18 m on all axes (in double precision 1e30 "
+     "m), around 2,000 boxes that all move (--quick: 500)",
+     "one pair of the plane with each box; the plane costs no more than these pairs", endlessPlane},
     {"H3", "NaN in one field of a box",
-     "60 boxes, of which one has NaN in one of its six fields; others move for six frames, and "
-     "another one is NaN in one of them",
-     "NaN pairs with nothing, is reported once and counted; all other pairs are exact",
+     "60 boxes; one box has NaN in one of its six fields (x, y, z of min and max); in six frames, "
+     "other boxes move, and in one of these frames a second box has NaN",
+     "a box with NaN is in no pair; it is counted, and reported once; all other pairs are exact",
      nanInOneField},
-    {"H5", "boxes inside out",
-     "60 boxes, and boxes with min > max on one, two and three axes, small and large, and the "
-     "empty box of +-FLT_MAX and +-infinity",
-     "pairs as comparing the coordinates says, as Bullet's own overlap test does", invertedBoxes},
-    {"H30", "cell numbers beyond 2^31",
-     "cells of 1 m, boxes of 1 to 2 ulp at the eight corners +-2^31, 2^32, 2^62, 2^64",
-     "exact pairs; no product overflows", cellNumbersThatOverflow},
+    {"H5", "boxes with min > max",
+     "60 boxes; small and large boxes with min > max on one, two or three axes; empty boxes, from "
+     "FLT_MAX to -FLT_MAX and from infinity to -infinity",
+     "exact pairs, by comparing the coordinates as Bullet's own overlap test does", invertedBoxes},
+    {"H30", "cell indices beyond 2^31",
+     "cells of 1 m; boxes of 1 to 2 ulp at the points (+-x, +-x, +-x) for x = 2^31, 2^32, 2^62 and "
+     "2^64",
+     "exact pairs; no product overflows", largeCellIndices},
 };
 
 }  // namespace

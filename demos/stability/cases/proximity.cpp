@@ -66,8 +66,8 @@ constexpr auto anyRadius = [](auto& run) {
         }
     }
     judgeBall(run, scene, Point(Point::Constant(kNan<Scalar>)), Scalar(3));
-    run.note(run.isOurs ? "Cost: boxes tested at most, by all there are."
-                        : "By aabbTest() with the box around the ball.");
+    run.note(run.isOurs ? "Cost: boxes that a query tests at most, divided by the number of boxes."
+                        : "The query is aabbTest() with the box around the sphere.");
 };
 
 // --- Nobody --------------------------------------------------------------------------------------
@@ -138,13 +138,15 @@ constexpr auto nothingThere = [](auto& run) {
 
 constexpr HardCase kProximityCases[] = {
     {"H43", "radii of 0, -1, 1e30 and NaN",
-     "balls of such radii, and of 1/8, 3 and 40 m, around six points, on boxes, between them, and "
-     "1e6 m outside of all 1,000",
-     "the closed ball, empty for negative and NaN; no more tests than boxes", anyRadius},
-    {"H44", "nobody, one, all outside",
-     "0, 1 and 40 boxes 1 km outside of the region that is asked about, and of the axis sweep's "
-     "world; then destroyed to the last one",
-     "no pair, no hit, no harm", nothingThere},
+     "1,000 boxes; spheres of these radii, and of 1/8, 3, 40 and -1e30 m, around six points: on "
+     "boxes, between boxes, and 1e6 m away; also around a point with NaN",
+     "the boxes that the closed sphere touches; none for a negative radius or NaN; no more tests "
+     "than boxes",
+     anyRadius},
+    {"H44", "no boxes, or all boxes outside",
+     "0, 1 and 40 boxes, 1 km outside the region of the queries and the world of the axis sweep; "
+     "two of the 40 at one place; then all are destroyed",
+     "exact pairs, no hit, no crash", nothingThere},
 };
 
 }  // namespace

@@ -117,8 +117,9 @@ void judgeGrazingBoxes(CaseRun<Scalar>& run) {
         areAllFound &= key <= 1 && (key >= 0 || !isMet);
         extra += key >= 0 && !isMet ? 1 : 0;
     }
-    run.expect(areAllFound, "a box meets all that it grazes on its way");
-    run.expect(extra < kRays / 2, "of what a box misses by a hair, it meets some");
+    run.expect(areAllFound, "a thick ray meets all boxes that it grazes");
+    run.expect(extra < kRays / 2,
+               "fewer than half of the thick rays meet a box that they just miss");
 }
 
 constexpr auto alongBorders = [](auto& run) {
@@ -198,7 +199,7 @@ void judgeWorseRays(CaseRun<Scalar>& run, RayScene<Scalar>& scene, const Vector3
     const auto judge = [&](const Point& begin, const Point& end) {
         scene.judge(begin, end, never);
         run.expect(scene.cost().rowsVisited == 0 && scene.cost().boxesTested <= kWaiting,
-                   "a ray with a bad number reads only what waits");
+                   "an invalid ray tests only boxes that moved since the last update");
     };
     for (const Scalar bad : {kNan<Scalar>, kInfinity<Scalar>, -kInfinity<Scalar>}) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -219,7 +220,7 @@ void judgeWorseRays(CaseRun<Scalar>& run, RayScene<Scalar>& scene, const Vector3
         const QueryCost cost =
             scene.pairs().grid()->visit(RayRegion<Scalar>(from, to, fatness), found);
         run.expect(found.found.empty() && cost.boxesTested <= scene.boxes().size() + kWaiting,
-                   "what is fat by NaN meets nothing");
+                   "a thick ray with NaN in its thickness meets nothing");
     }
 }
 
@@ -250,26 +251,28 @@ constexpr auto noRay = [](auto& run) {
     if (scene.isOurs()) {
         run.addCost(worst / normalWork, 2.5);
         judgeWorseRays(run, scene, begin, end);
-        run.note("Cost: blocks read, by those of a ray that is one.");
+        run.note("Cost: blocks of boxes read, divided by the blocks that a valid ray reads.");
     }
     noteRaysThroughBullet(run);
 };
 
 constexpr HardCase kRayCases[] = {
     {"H13", "rays along an axis",
-     "rays along x, y and z, both ways, through the corners and centres of 50 of 400 boxes, one of "
-     "them with a corner at 0; other components of the direction 0 and -0",
-     "what the segment meets, closed", alongAxes},
+     "rays along x, y and z, in both directions, through the min corners, max corners and centres "
+     "of 50 of 400 boxes; one box has a corner at 0; the other components of the direction are 0 "
+     "and -0",
+     "the boxes that the segment meets or touches", alongAxes},
     {"H14", "rays in faces, edges and corners",
-     "512 cubes side by side, cells of 1 m; rays in the faces that they share, along their edges, "
-     "through their corners",
-     "the cubes on all sides", alongBorders},
-    {"H15", "rays of no length",
-     "from a point to itself: corners and insides of 40 of 200 boxes, and beside them",
-     "what contains the point", noLength},
+     "512 cubes side by side, cells of 1 m; rays in shared faces, along shared edges and through "
+     "shared corners; for hashphase also thick rays that graze boxes",
+     "all cubes that the ray touches, on all sides", alongBorders},
+    {"H15", "rays of length 0",
+     "rays from a point to the same point: at corners of 40 of 200 boxes, inside these boxes, and "
+     "next to them",
+     "the boxes that contain the point", noLength},
     {"H19", "rays with NaN or infinity",
-     "NaN and both infinities in each component of each end; 2,000 boxes",
-     "no hit, at no more than 2.5 times the work of a ray", noRay},
+     "2,000 boxes; rays with NaN, infinity or -infinity in one component of the start or the end",
+     "no hit, at no more than 2.5 times the cost of a valid ray", noRay},
 };
 
 }  // namespace

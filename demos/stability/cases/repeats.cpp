@@ -128,12 +128,12 @@ constexpr auto allInstructions = [](auto& run) {
         detail::useInstructionSet(set);
         const std::uint64_t hash = hashOfAll<Scalar>(count, run.seed, serialFor);
         expected = tried.empty() ? hash : expected;
-        run.expect(hash == expected, "the answers are those of scalar code");
+        run.expect(hash == expected, "the answers equal the answers of scalar code");
         judgePairs(run, variedBoxes<Scalar>(1000, run.seed));
         tried += (tried.empty() ? "" : ", ") + std::string(detail::nameOf(set));
     }
     detail::useInstructionSet(before);
-    run.note("Tried here: " + tried + ".");
+    run.note("Tested here: " + tried + ".");
 };
 
 /// The boxes in another order, and back by what they were called before.
@@ -184,20 +184,22 @@ constexpr auto anyOrder = [](auto& run) {
         }
         OnThreads parallel(threads);
         run.expect(hashOfAll<Scalar>(kCount, run.seed, parallel) == alone,
-                   "the answers on threads are those on one");
-        run.expect(parallel.wereAllBusy(), "all threads have work");
+                   "the answers are the same on any number of threads");
+        run.expect(parallel.wereAllBusy(), "every thread has work");
     }
 };
 
 constexpr HardCase kRepeatCases[] = {
     {"H38", "all instruction sets",
-     "pairs, sweeps, a ray, a volume and a crowd of 10,000 boxes (--quick: 1,500) over four "
-     "frames, in both precisions, with each instruction set that this processor has",
-     "the same answers to the last bit", allInstructions},
+     "pairs and sweeps of 10,000 boxes (--quick: 1,500) over four frames, then a ray, a convex "
+     "region and a radius search; in both precisions; with each instruction set that this "
+     "processor has",
+     "the same answers with all instruction sets, bit for bit", allInstructions},
     {"H39", "any order, any number of threads",
-     "1,000 boxes created in five orders and moved; all answers about 70,000 on 1, 2, 3, 5, 8 and "
-     "16 threads",
-     "the same sorted pairs in any order; the same answers on any number of threads", anyOrder},
+     "1,000 boxes, created in five orders, and moved; for hashphase also the work of H38 on 70,000 "
+     "boxes, with 1, 2, 3, 5, 8 and 16 threads",
+     "the same sorted pairs in any creation order; the same answers on any number of threads",
+     anyOrder},
 };
 
 }  // namespace

@@ -60,7 +60,7 @@ template <class Scalar>
 void judgeModesOfThreads(CaseRun<Scalar>& run) {
     const Boxes<Scalar> boxes = boxesOfNormalNumbers<Scalar>(run.seed);
     const Keys exact = touchingPairs(boxes);
-    run.expect(exact.size() > 300, "boxes of normal numbers touch");
+    run.expect(exact.size() > 300, "more than 300 pairs of boxes without denormal numbers touch");
     for (const double cellSize : {0.0, 1e-30, 1.0, 1e10, 1e30}) {
         for (int modes = 0; modes < 4; ++modes) {
             const bool areThreadsFlushed = (modes & 2) != 0;
@@ -118,9 +118,9 @@ void judgeModesOfDenormals(CaseRun<Scalar>& run) {
         counts[flushes ? 1 : 0] = touchingPairs(boxes).size();
     }
     run.expect(!FlushToZero::isAvailable() || counts[1] == 200 * 199 / 2,
-               "flushed, all denormal numbers touch");
+               "with flushing, all denormal boxes touch");
     run.expect(10 < counts[0] && (!FlushToZero::isAvailable() || counts[0] < counts[1]),
-               "not flushed, some do");
+               "without flushing, only some denormal boxes touch");
 }
 
 constexpr auto denormalNumbers = [](auto& run) {
@@ -151,7 +151,7 @@ constexpr auto denormalNumbers = [](auto& run) {
         judgeModesOfDenormals(run);
     }
     if (!FlushToZero::isAvailable()) {
-        run.note("This processor cannot flush to zero.");
+        run.note("This processor cannot flush denormal numbers to zero.");
     }
 };
 
@@ -215,17 +215,18 @@ constexpr auto unitBoxesFarOut = [](auto& run) {
         scene.judge();
         CaseTally inDouble;
         inDouble.compare(scene.reported(), touchingPairs(boxes));
-        run.expect(inDouble.outcome().missing == 0, "no pair of the boxes in double is lost");
+        run.expect(inDouble.outcome().missing == 0, "no pair of the original boxes is missing");
         beyondTruth += inDouble.outcome().extra;
         if (run.isOurs) {
             judgeLifeFarOut(run, far);
             judgeLifeFarOut(run, -far);
         }
     }
-    run.expect(beyondTruth == 0 || std::is_same_v<Scalar, float>, "in double there are no more");
+    run.expect(beyondTruth == 0 || std::is_same_v<Scalar, float>,
+               "in double precision, no pair is extra");
     run.note("Rounding outward adds " + std::to_string(beyondTruth) +
-             " pairs to those of the boxes in double precision" +
-             (run.isOurs ? "; Grid<double> has exactly the latter." : "."));
+             " pairs that the original boxes do not have" +
+             (run.isOurs ? "; Grid<double> adds none." : "."));
 };
 
 /// A scene of multiples of a unit, shifted by so much.
@@ -289,7 +290,8 @@ void judgeShiftedLife(CaseRun<Scalar>& run, double unit, const Vector3<double>& 
             compare(RayRegion<Scalar>(low, to), RayRegion<Scalar>(low + by, to + by));
         }
     }
-    run.expect(tests[1] <= tests[0] + tests[0] / 10 + 1000, "it costs as much there as here");
+    run.expect(tests[1] <= tests[0] + tests[0] / 10 + 1000,
+               "the shifted scene costs about as much as the scene at the origin");
 }
 
 constexpr auto shiftedScene = [](auto& run) {
@@ -323,21 +325,23 @@ constexpr auto shiftedScene = [](auto& run) {
 
 constexpr HardCase kRoundingCases[] = {
     {"H10", "denormal numbers",
-     "boxes of 1.5e-40 m and such as differ in denormal digits; cells of 1e-30 m; the processor "
-     "set to flush denormals to zero (FTZ, DAZ), and not",
-     "pairs as comparing says under the same setting, and the same ones where no two denormal "
-     "numbers are compared; smaller cells are refused",
+     "boxes of 1.5e-40 m (in double precision 1.5e-310 m), and boxes with some denormal "
+     "coordinates; cells of 1e-30 m; with and without flushing of denormal numbers to zero (FTZ, "
+     "DAZ)",
+     "exact pairs, by comparing the coordinates under the same setting; the same pairs under both "
+     "settings if no two denormal numbers are compared; cells of 1e-38 m are refused",
      denormalNumbers},
     {"H11", "unit boxes 2^24 to 1e9 m away",
-     "150 boxes of 1 m at 2^24, 1e7, 5e7, 1e8, 1e9 m in double precision, rounded outward to "
-     "single",
-     "exact pairs of the rounded boxes, so none of the true ones is lost; in double precision "
-     "exactly those",
+     "150 boxes of 1 m at 2^24, 1e7, 5e7, 1e8 and 1e9 m, computed in double precision and rounded "
+     "outward to single precision",
+     "exact pairs of the rounded boxes, so that no pair of the original boxes is missing; in "
+     "double precision exactly the pairs of the original boxes",
      unitBoxesFarOut},
     {"H12", "a scene at 0, 2^20 and 2^30 m",
-     "200 boxes on multiples of 1/8 m shifted by 2^20 m, of 128 m by 2^30 m; in double precision "
-     "of 1/8 m by 2^30 m",
-     "identical pairs", shiftedScene},
+     "200 boxes on multiples of 1/8 m, shifted by 2^20 m, and on multiples of 128 m, shifted by "
+     "2^30 m; for hashphase also moving boxes on multiples of 2^-6 m, shifted by up to 2^16 m (in "
+     "double precision 2^-20 m, by up to 2^30 m)",
+     "the same pairs as at the origin", shiftedScene},
 };
 
 }  // namespace

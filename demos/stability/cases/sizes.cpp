@@ -91,9 +91,9 @@ void judgeMixtures(CaseRun<Scalar>& run) {
                 const double pairs = pairsPerBox * static_cast<double>(count);
                 run.expect(
                     std::abs(static_cast<double>(scene.reported().size()) - pairs) <= pairs / 4,
-                    "a mixture has as many pairs as it is made for");
+                    "boxes of mixed sizes have about the planned number of pairs");
                 run.expect(testsOf(scene) <= bound * static_cast<double>(count),
-                           "boxes of all sizes cost a hundred tests each");
+                           "a box costs at most 120 tests, or 6 if all sizes are equal");
             };
             judge(1, 1, 6);
             judge(1e-6, 1e6, 120);
@@ -118,13 +118,15 @@ constexpr auto allSizes = [](auto& run) {
     one.judge();
     if (many.grid() != nullptr) {
         const double pairs = static_cast<double>(many.reported().size());
-        run.expect(testsOf(many) <= 120 * (pairs + count), "levels of cells spare tests");
+        run.expect(testsOf(many) <= 120 * (pairs + count),
+                   "the scene costs at most 120 tests per pair and box");
         run.addCost(testsOfMove(many) / testsOfMove(one), 3);
-        run.note("Cost: boxes tested for each object and pair, by those of one size.");
+        run.note(
+            "Cost: boxes tested per object and pair, divided by the value for cubes of one size.");
         judgeMixtures(run);
     } else {
         run.addCost(timeOf(many) / timeOf(one), 3);
-        run.note("Cost: time of a frame, by that of as many of one size.");
+        run.note("Cost: time of a frame, divided by the time for as many cubes of one size.");
     }
     many.judge();
 };
@@ -140,10 +142,11 @@ constexpr auto oneLargeObject = [](auto& run) {
     if (with.grid() == nullptr) {
         return;
     }
-    run.expect(with.cost().grid.filed == boxes.size(), "everyone is filed once");
+    run.expect(with.cost().grid.filed == boxes.size(), "each box is stored once");
     without.findPairs();
     run.addCost(testsOfMove(with) / testsOfMove(without), 1.25);
-    run.note("Cost: boxes tested for each object and pair, by those without it.");
+    run.note(
+        "Cost: boxes tested per object and pair, divided by the value without the large cube.");
 };
 
 // --- Collisions -----------------------------------------------------------------------------------
@@ -171,12 +174,13 @@ void judgeOneBucket(CaseRun<Scalar>& run, const Boxes<Scalar>& boxes) {
         PairScene<Scalar> scene(run, boxes, {.cellSize = cellSize});
         scene.judge();
         run.expect(cellSize == 0 || 2 * scene.cost().grid.largestCell >= boxes.size(),
-                   "the crowd is in one bucket");
-        run.expect(scene.cost().boxesTested < 5 * kCrowd * boxes.size(), "a crowd is sorted");
+                   "at least half of the boxes are in one bucket");
+        run.expect(scene.cost().boxesTested < 5 * kCrowd * boxes.size(),
+                   "a crowded bucket is sorted");
         for (std::uint32_t i = 0; i < scene.size(); i += 97) {
             const QueryCost cost = scene.judgeQuery(BoxRegion<Scalar>{boxes[i]});
             run.expect(cost.boxesTested <= (cellSize == 0 ? 32 : 3 * kCrowd),
-                       "a crowd is searched where a query is");
+                       "a query tests only a part of a crowded bucket");
         }
     }
 }
@@ -198,7 +202,7 @@ void judgeLongRegions(CaseRun<Scalar>& run) {
             const double x = between<double>(random, -1e6, 1e6 - length);
             const QueryCost cost = scene.judgeQuery(
                 BoxRegion<Scalar>{makeBox<Scalar>(x, -15, -15, x + length, 15, 15)});
-            run.expect(cost.boxesTested <= boxes.size(), "a box is tested once a query");
+            run.expect(cost.boxesTested <= boxes.size(), "a query tests each box at most once");
         }
     }
 }
@@ -243,7 +247,7 @@ constexpr auto cellsThatCollide = [](auto& run) {
         return;
     }
     run.addCost(testsOfMove(adversary) / testsOfMove(harmless), 3);
-    run.note("Cost: boxes tested for each object and pair, by those of rows that do not collide.");
+    run.note("Cost: boxes tested per object and pair, divided by the value without collisions.");
     for (const CrowdPlace place : {CrowdPlace::anywhere, CrowdPlace::longRows}) {
         judgeOneBucket(run, crowdInOneBucket<Scalar>(place).boxes);
     }
@@ -252,15 +256,17 @@ constexpr auto cellsThatCollide = [](auto& run) {
 
 constexpr HardCase kSizeCases[] = {
     {"H27", "sizes from 1e-6 to 1e6 m",
-     "4,000 (--quick: 1,000) cubes of 1e-6 to 1e6 m, as many of each size, within 12 edges of the "
-     "origin; as many of 1 m",
-     "exact pairs; at most three times the work of one size", allSizes},
-    {"H28", "one object of 8,000 cells", "a cube of 20 m among 4,000 of 0.4 to 0.8 m, cells of 1 m",
-     "exact pairs; it is filed once, and costs what its pairs do", oneLargeObject},
-    {"H29", "cells that collide in the hash",
-     "cells of 1 m; pairs in rows of cells that our hash cannot tell apart, on multiples of table "
-     "sizes, and of large primes",
-     "exact pairs, and bounded work", cellsThatCollide},
+     "4,000 cubes (--quick: 1,000) of 1e-6 to 1e6 m, equally many of each order of magnitude, "
+     "within 12 edge lengths of the origin; for comparison, as many cubes of 1 m",
+     "exact pairs; at most three times the cost of cubes of one size", allSizes},
+    {"H28", "one object as large as 8,000 cells",
+     "a cube of 20 m among 4,000 cubes of 0.4 to 0.8 m; cells of 1 m",
+     "exact pairs; the large cube is stored once, and costs no more than its pairs",
+     oneLargeObject},
+    {"H29", "cells with hash collisions",
+     "cells of 1 m; pairs of boxes in rows of cells that share a bucket of hashphase's hash table, "
+     "at multiples of table sizes, and at multiples of large primes",
+     "exact pairs; at most three times the cost without collisions", cellsThatCollide},
 };
 
 }  // namespace

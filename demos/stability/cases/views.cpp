@@ -131,7 +131,8 @@ constexpr auto strangeViews = [](auto& run) {
     }
     run.compare(*look(scene, inverted), Objects{});
     if (run.isOurs) {
-        run.expect(ConvexRegion<Scalar>(inverted).isEmpty(), "what is turned inside out is empty");
+        run.expect(ConvexRegion<Scalar>(inverted).isEmpty(),
+                   "a region with inverted planes is empty");
     }
 };
 
@@ -177,21 +178,23 @@ constexpr auto strangeRectangles = [](auto& run) {
         run.compare(chosen(view, bad, {100, 100}), Objects{});
         run.expect(!selectionError(view, bad, {100, 100}).empty() &&
                        !selectionError(view, {-300, 10}, {-10, 500}).empty(),
-                   "what selects nothing says why");
+                   "selectionError() gives a reason if nothing can be selected");
     }
 };
 
 constexpr HardCase kViewCases[] = {
-    {"H41", "strange cameras",
-     "1,503 boxes, one around the camera, one around all that it sees, one 3 km away; far planes "
-     "at 10 m, 400 m and infinity; a line and a dot of the screen; all planes inverted",
-     "never without what is seen (where one of 400 points that are seen lies inside of a box); "
-     "nothing behind inverted planes",
+    {"H41", "unusual cameras",
+     "1,503 boxes: one around the camera, one around everything that it sees, one 3 km away; far "
+     "planes at 10 m, 400 m and infinity; a view of the whole screen, of a line and of a point on "
+     "it; all planes inverted",
+     "no visible box is missing (a box is visible if one of 400 visible points lies in it); "
+     "inverted planes find nothing",
      strangeViews},
-    {"H42", "strange rectangles",
-     "rectangles dragged from any corner, without area, as a line, partly and wholly beside the "
-     "window, of 2e9 pixels, over the horizon, with NaN; 1,503 boxes",
-     "what is seen there, whichever way it was dragged; nothing beside the window, with a reason",
+    {"H42", "unusual selection rectangles",
+     "1,503 boxes; rectangles that are dragged from any corner, without area, as a line, partly or "
+     "fully outside the window, 2e9 pixels wide, above the horizon, or with NaN",
+     "the visible boxes in the rectangle, from whichever corner it is dragged; nothing, and a "
+     "reason, outside the window or with NaN",
      strangeRectangles},
 };
 

@@ -96,15 +96,17 @@ void askNested(Scene& scene, Run& run) {
         .aabbTest(toBullet(region.min()), toBullet(region.max()), callback);
     std::sort(found.begin(), found.end());
     run.compare(found, touching(scene, region));
-    run.expect(callback.hasFoundItself, "a box query within a query finds the box it asks with");
+    run.expect(callback.hasFoundItself,
+               "a box query in a callback finds the proxy whose box it uses, once");
 
     RayWithin alone(scene, 0);
     alone.cast();
     RayWithin nested(scene, 1);
     nested.cast();
-    run.expect(nested.found == alone.found, "a ray finds the same with rays within");
+    run.expect(nested.found == alone.found,
+               "a ray finds the same proxies if its callback casts rays");
     run.expect(nested.isRepeated && nested.last == alone.found,
-               "a ray within a ray finds the same as the ray alone");
+               "a ray in a callback finds the same proxies as the ray alone");
 }
 
 // Bullet's way to remove pairs while walking over them.
@@ -187,8 +189,8 @@ void judgeChanges(Run& run, const Bounds& region, const Ask& ask) {
     std::erase_if(changes.found, isChanged);
     std::sort(changes.found.begin(), changes.found.end());
     run.compare(changes.found, before);
-    run.expect(!changes.isDeadOffered, "a query finds nobody whom its callback has destroyed");
-    run.expect(changes.selfCount >= 8, "callbacks change the proxies that they are given");
+    run.expect(!changes.isDeadOffered, "a query reports no proxy that its callback has destroyed");
+    run.expect(changes.selfCount >= 8, "callbacks change proxies that are reported to them");
     scene.judge();
 }
 
@@ -233,7 +235,7 @@ void changesWithin(Run& run) {
     btOverlappingPairCache& cache = *broadphaseOf(scene.subject()).getOverlappingPairCache();
     const auto pairs = static_cast<std::size_t>(cache.getNumOverlappingPairs());
     cache.processAllOverlappingPairs(&callback, nullptr);
-    run.expect(callback.seen == pairs, "every pair is seen once while pairs are removed");
+    run.expect(callback.seen == pairs, "each pair is visited once while pairs are removed");
 }
 
 // --- Cells of no size -----------------------------------------------------------------------------
@@ -263,7 +265,7 @@ void expectRefused(double cellSize, PairCache& cache, Run& run) {
             isRefused([&] { return std::make_unique<Grid<double>>(config.grid); }) &&
             isRefused([&] { return std::make_unique<SpatialHashBroadphase>(&cache, config); }) &&
             !configError(config.grid).empty(),
-        "a cell of that size is refused with a reason");
+        "an invalid cell size is refused with a reason");
 }
 
 // The cache serves a broadphase.
@@ -278,7 +280,7 @@ void judgeCache(PairCache& cache, const Boxes<btScalar>& boxes, Run& run) {
     run.compare(reported, touchingPairs(boxes));
 }
 
-void cellSizesThatAreNone(Run& run) {
+void invalidCellSizes(Run& run) {
     if (!run.isOurs) {
         return;
     }
@@ -292,10 +294,10 @@ void cellSizesThatAreNone(Run& run) {
                               1e31, 1e-31, Limits::denorm_min()}) {
         expectRefused(size, cache, run);
     }
-    run.expect(configError({.cellSize = 0}).empty(), "0 chooses the size");
-    run.expect(answersOf(scene) == before, "what runs already answers as before");
+    run.expect(configError({.cellSize = 0}).empty(), "a cell size of 0 is valid");
+    run.expect(answersOf(scene) == before, "an existing broadphase answers as before");
     run.expect(cache.memoryBytes() == cacheBytes && cache.validate().empty(),
-               "a pair cache given to what is refused stays as it was");
+               "a refused broadphase leaves the pair cache unchanged");
     judgeCache(cache, scene.boxes(), run);
     for (std::uint32_t i = 0; i < scene.size(); i += 3) {
         scene.move(i, scene.boxes()[i].translated(Point(0.5F, 0, 0)));
@@ -304,19 +306,21 @@ void cellSizesThatAreNone(Run& run) {
 }
 
 constexpr HardCase kWithinCases[] = {
-    {"H32", "changes and questions within one",
-     "box queries within box queries and rays within rays, by their callbacks; callbacks of both "
-     "that destroy, create and move whom they are told of, and others; the same proxies moved, "
-     "destroyed, created and moved again within a frame; pairs removed while walking over them; "
-     "200 cubes",
-     "all answers as if asked alone, of what has not changed; exact pairs; every pair seen once",
+    {"H32", "queries and changes inside a query",
+     "200 cubes. Callbacks of box queries start box queries, and callbacks of rays cast rays. "
+     "Callbacks of both also destroy, create and move the reported proxy and other proxies. Ten "
+     "times in each of 20 frames, a proxy is moved, destroyed, created and moved again. A callback "
+     "removes pairs while processAllOverlappingPairs() visits them",
+     "a nested query finds what it finds alone; a query reports each unchanged proxy once, and no "
+     "destroyed proxy; exact pairs; each pair is visited once",
      changesWithin},
-    {"H31", "cell sizes that are none",
-     "a cell size of -1, NaN, +-infinity, 1e31, 1e-31, the smallest denormal; and 0",
-     "refused with a reason by grids of both precisions and the broadphase; 0 chooses one; what "
-     "runs already answers as before, and the pair cache that the refused one was given serves "
-     "another",
-     cellSizesThatAreNone},
+    {"H31", "invalid cell sizes",
+     "a cell size of -1, NaN, infinity, -infinity, 1e31, 1e-31 or the smallest denormal number; "
+     "and a cell size of 0",
+     "refused with a reason, by the broadphase and by grids of both precisions; 0 is valid, and "
+     "hashphase chooses the size; an existing broadphase answers as before; the pair cache passed "
+     "to a refused broadphase is unchanged, and works with another broadphase",
+     invalidCellSizes},
 };
 
 }  // namespace

@@ -177,17 +177,17 @@ void disturbedWorlds(Run& run) {
 }
 
 constexpr HardCase kWorldRollbackCases[] = {
-    {"H47", "eight steps back in every step",
-     "a tower, ragdolls on each other, bullets that walls stop, bullets that walls notice, 200 "
-     "steps (--quick: small ones, 60); before each step from the ninth on back by eight, which are "
-     "taken again and saved again",
-     "every step ends as in a world that never goes back, to the last bit", eightStepsBack},
-    {"H48", "a world disturbed, and put back",
-     "a pyramid, a house of cards, a chain, ragdolls, mass ratios of 1,000, at the origin and 16 "
-     "km "
-     "away, saved after 100 steps; ten times (--quick: 3) bodies are thrown, stopped, moved and "
-     "taken out, joints removed, gravity turned; 30 steps, and back",
-     "the 60 steps (--quick: 30) that follow are those of the first time, to the last bit",
+    {"H47", "eight steps back before each step",
+     "a tower, ragdolls on each other, bullets at walls that stop them, bullets that fly through "
+     "walls and touch them; 200 steps (--quick: small worlds, 60 steps). From the ninth step on, "
+     "the world goes back by eight steps before each step, takes them again and saves them again",
+     "after every step, the state of a world that never goes back, bit for bit", eightStepsBack},
+    {"H48", "disturbed worlds, restored",
+     "a pyramid, a house of cards, a chain, ragdolls, mass ratios of 1,000; at the origin, and 16 "
+     "km away along each axis; saved after 100 steps. Ten times (--quick: 3 times), bodies are "
+     "thrown, stopped, moved and removed, a joint is removed, and gravity changes; after 30 steps, "
+     "the world is restored",
+     "the next 60 steps (--quick: 30) have the same states as the first time, bit for bit",
      disturbedWorlds},
 };
 
