@@ -104,7 +104,7 @@ SELECT claim, holds, evidence FROM (
     FROM methods JOIN did_in_all USING (method) WHERE must_be_exact AND scene = 'ground')
 ORDER BY number, part;
 
-/* {"choices": "by what is lost, and by what is drawn in vain"} */
+/* {"choices": "by what is lost, and by what is drawn needlessly"} */
 SELECT 'Culling, ' || thousands(objects) || ' objects: visible objects lost, at worst', name, us / 1000,
        worst,
        iif(lost_in_all = 0, 'loses nothing', 'loses up to ' || number(worst) || ' % of the visible objects')

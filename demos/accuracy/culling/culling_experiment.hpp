@@ -32,7 +32,7 @@ struct CullingScene {
 };
 
 /// must_see_all   a visible object that it does not draw breaks a check
-/// must_be_exact  as does one that it draws in vain, but for rounding
+/// must_be_exact  as does an invisible object that it draws, except by rounding
 /// takes_cells    the scene's cell size matters
 using CullingMethod = Method<Culling(const CullingScene&)>;
 
