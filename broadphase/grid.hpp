@@ -84,9 +84,9 @@ public:
     [[nodiscard]] ProxyId add(const Box& box, Mobility mobility = Mobility::mobile,
                               const ProxyGroups& groups = {});
 
-    /// Allocates memory for `count` proxies in total. Up to this number, add() allocates nothing until
-    /// releaseUnusedMemory(), except for the first groups (see setGroups()). Throws std::length_error beyond 2^28.
-    /// Cost: O(count) if the capacity grows.
+    /// Allocates memory for `count` proxies in total. Until releaseUnusedMemory(), add() allocates nothing for up to
+    /// `count` proxies. Exception: the first proxy with groups other than ProxyGroups{}; see setGroups(). Throws
+    /// std::length_error beyond 2^28. Cost: O(count) if the capacity grows.
     void reserve(std::size_t count);
 
     /// Sets the proxy's box. If no bit changes, the call costs one comparison. Cost: O(1) amortised.
@@ -108,11 +108,11 @@ public:
     void move(std::span<const ProxyId> ids, std::span<const Box> boxes);
     void move(std::span<const ProxyId> ids, std::span<const Box> boxes, ParallelFor parallelFor);
 
-    /// Sets which proxies this proxy may pair with in Pairs. Queries ignore groups. Pairs neither tests, filters nor
-    /// remembers pairs that groups refuse, even if hundreds of proxies share a cell. If the grid has Pairs, the proxy
-    /// counts as changed: the next Pairs::update() finds its new pairs. Existing pairs stay until their boxes
-    /// separate, or until Pairs::refilter(). On std::bad_alloc, changes nothing.
-    /// Cost: O(1). O(proxies) when the grid gets its first groups other than ProxyGroups{}.
+    /// Sets which proxies this proxy may pair with in Pairs. Queries ignore groups. The class Pairs skips pairs that
+    /// groups refuse: it does not test, filter or store them. If the grid has Pairs, the proxy counts as changed: the
+    /// next Pairs::update() finds its new pairs. Existing pairs stay until their boxes separate, or until
+    /// Pairs::refilter(). On std::bad_alloc, changes nothing. Cost: O(1). O(proxies) when the grid gets its first
+    /// groups other than ProxyGroups{}.
     void setGroups(ProxyId id, const ProxyGroups& groups);
 
     /// Returns the proxy's groups.
@@ -234,7 +234,8 @@ public:
     /// Bytes of the box trees that only rays read, as part of memoryBytes(). 0 until enough rays were cast.
     [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
 
-    /// Frees the box trees for rays; many later rays build them again. Asserted: this thread runs no query.
+    /// Frees the box trees for rays. They are built again once rays have cost as much as building them. Asserted:
+    /// this thread runs no query.
     void releaseRayMemory() noexcept;
 
     /// Frees unused and reserved capacity, and scratch memory that later calls allocate again. Drops unused indices

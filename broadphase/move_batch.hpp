@@ -30,8 +30,8 @@ struct Move {
 };
 
 /// True when no proxy appears twice: the results of indexOf(i) for all i < count differ, except kNoProxyIndex. False
-/// if count > indexLimit. All other results must be below `indexLimit`. Calls indexOf() on any thread. Cost: two
-/// passes over the moves.
+/// if count > indexLimit. All other results must be below `indexLimit`. May call indexOf() from several threads at
+/// once. Cost: two passes over the moves.
 template <class IndexOf>
 [[nodiscard]] bool areDistinct(MoveScratch& scratch, std::size_t count, std::size_t indexLimit,
                                ParallelFor parallelFor, const IndexOf& indexOf) {

@@ -57,8 +57,8 @@ public:
     /// sweeping proxies in parts or as rays. For pairs of sweeping proxies, it cuts the frame into up to 64 time
     /// slices.
     /// Cost: grows with the changed proxies, and with the pairs of recently changed proxies. At worst (inverted
-    /// boxes, or boxes that overlap most others on each axis but touch few): a few tests for every two proxies in a
-    /// cell.
+    /// boxes, or boxes that overlap most others on each axis but touch few): a few tests for each combination of two
+    /// proxies in a cell.
     PairChanges update(PairFilter filter = acceptAllPairs, ParallelFor parallelFor = serialFor) &;
 
     /// Finds pairs of this proxy that began to overlap since the last update. Returns them as born; update() does not
@@ -81,8 +81,8 @@ public:
     }
 
     /// Asks the filter again about each proxy that overlaps this proxy now, or touched it along a path at the last
-    /// update. Returns born and died pairs, perhaps of removed proxies as in findPairsNow(). Asserted: the proxy is
-    /// alive. Cost: as a few box queries; the first call after many changes: at most as update().
+    /// update. Returns born and died pairs. As in findPairsNow(), died pairs may have removed proxies. Asserted: the
+    /// proxy is alive. Cost: as a few box queries; the first call after many changes: at most as update().
     PairChanges refilter(ProxyId id, PairFilter filter) &;
 
     /// refilter() for many proxies, in one pass. Asks about each candidate once, in ascending order. `ids` may

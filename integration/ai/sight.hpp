@@ -9,8 +9,8 @@
 // Blockers  A filter chooses blockers. The viewer, the target, and boxes that contain the eye (such as a house) never
 //           block.
 // Closed    The cone includes its surface. A line that only touches a box meets the box. Rounding may change both.
-// Threads   All functions query the grid. Sight::look() calls the filters on all threads of `parallelFor`. During
-//           look(), no other thread may use the Sight object.
+// Threads   For all functions, the thread rules of grid queries hold (grid.hpp). Sight::look() calls the filters on
+//           all threads of `parallelFor`. During look(), no other thread may use the Sight object.
 // Bad data  A viewer sees nothing if its range or half angle is negative or NaN, its eye is not finite, or its
 //           direction is zero or not finite. A proxy is not seen if its distance overflows.
 

@@ -24,8 +24,8 @@ public:
     /// The asker's group and mask, like m_collisionFilterGroup and m_collisionFilterMask of a ray callback. By
     /// default, the asker is in all groups and accepts all groups.
     struct Asker {
-        int group = btBroadphaseProxy::AllFilter;  ///< groups that the asker is in
-        int mask = btBroadphaseProxy::AllFilter;   ///< groups that the asker accepts
+        int group = btBroadphaseProxy::AllFilter;  ///< groups of the object that asks
+        int mask = btBroadphaseProxy::AllFilter;   ///< groups that this object accepts
     };
 
     GroupFilter(const SpatialHashBroadphase& broadphase, const Asker& asker) noexcept

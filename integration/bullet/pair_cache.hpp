@@ -279,7 +279,7 @@ public:
     /// Who removes a pair. The broadphase must know of removals by others.
     enum class Remover { broadphase, other };
 
-    /// removeOverlappingPairsContainingProxies() on behalf of `remover`.
+    /// As removeOverlappingPairsContainingProxies(). Notifies the broadphase if the remover is not the broadphase.
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher,
                        Remover remover);
 

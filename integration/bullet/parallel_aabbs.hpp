@@ -50,9 +50,10 @@ private:
 
 inline namespace HASHPHASE_BULLET_NAMESPACE {
 
-/// A world with the constructors and results of World. World is btCollisionWorld, btDiscreteDynamicsWorld,
-/// btDiscreteDynamicsWorldMt, btSoftRigidDynamicsWorld, btMultiBodyDynamicsWorld, or your own class derived from one
-/// of these. updateAabbs() sets all boxes with one call of SpatialHashBroadphase::setAabbs().
+/// A class derived from World, with the same constructors, which simulates exactly as World does. World is
+/// btCollisionWorld, btDiscreteDynamicsWorld, btDiscreteDynamicsWorldMt, btSoftRigidDynamicsWorld,
+/// btMultiBodyDynamicsWorld, or your own class derived from one of these. updateAabbs() sets all boxes with one call
+/// of SpatialHashBroadphase::setAabbs().
 template <class World>
 class ParallelAabbs : public World {
     static_assert(std::is_base_of_v<btCollisionWorld, World>,

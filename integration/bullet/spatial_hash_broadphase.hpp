@@ -99,10 +99,10 @@ public:
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box (aabbMin, aabbMax), passes
-    /// btRayAabb2() with the callback's own fields. Tests the boxes last set. Order: roughly from near to far; do not
-    /// rely on it. A ray with NaN or infinite ends, or of length 0, finds nothing. If the square of a ray's length
-    /// overflows, Bullet's fields are NaN or zero, as under btDbvtBroadphase. For such rays, query grid() with a
-    /// RayRegion. Cost: proportional to the boxes near the ray; at most one test for each proxy.
+    /// btRayAabb2() with the callback's own fields. Tests each box as the last setAabb() set it. Order: roughly from
+    /// near to far; do not rely on it. A ray with NaN or infinite ends, or of length 0, finds nothing. If the square
+    /// of a ray's length overflows, Bullet's fields are NaN or zero, as under btDbvtBroadphase. For such rays, query
+    /// grid() with a RayRegion. Cost: proportional to the boxes near the ray; at most one test for each proxy.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),

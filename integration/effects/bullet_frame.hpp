@@ -62,9 +62,9 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
     return {};
 }
 
-/// Returns the declaration as WorldEffects. To keep the bodies' own CCD thresholds, reset() `fastFrom` of the result.
-/// To keep the bodies' sleeping thresholds, set SleepingEffect::slowBelow to 0. Throws std::invalid_argument with
-/// bulletEffectsError(), if not empty.
+/// Converts the declared effects to WorldEffects. To keep the bodies' own CCD thresholds, reset() `fastFrom` of the
+/// result. To keep the bodies' sleeping thresholds, set SleepingEffect::slowBelow to 0. Throws std::invalid_argument
+/// with bulletEffectsError(), if not empty.
 [[nodiscard]] inline WorldEffects worldEffectsOf(const SceneEffects& effects) {
     if (const std::string error = bulletEffectsError(effects); !error.empty()) {
         detail::raiseInvalidArgument(error);

@@ -47,7 +47,7 @@ enum class SceneCounter : std::uint8_t {
     contactsSolved,    ///< pairs of spheres that bounced
     sweepsSolved,      ///< bodies that swept a path
     sweepBoxesTested,  ///< boxes tested on the paths of swept bodies
-    sweepersStopped,   ///< swept bodies that hit a body instead of passing it
+    sweepersStopped,   ///< swept bodies that hit a body instead of passing through it
     // Picks and selections since the previous frame.
     picks,                 ///< picking rays
     pickBoxesTested,       ///< boxes tested for picking rays
@@ -81,7 +81,7 @@ enum class SceneTable : std::uint8_t {
     ground,      ///< triangles and their grid
     walkers,     ///< positions at which the ground is queried, and results
     proxies,     ///< ids of the bodies in the grid
-    grid,        ///< boxes, and tables of boxes
+    grid,        ///< boxes, and the tables of cells
     pairs,       ///< pairs, and their changes
     contacts,    ///< list of present pairs
     sweeps,      ///< paths, and scratch memory of the search along them

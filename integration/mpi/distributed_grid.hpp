@@ -73,7 +73,7 @@ public:
     /// all ranks if configurations differ, and std::invalid_argument if the configuration is invalid.
     explicit DistributedGrid(MPI_Comm communicator, const DistributedConfig& config = {});
     /// Begins with a partition, such as from an earlier run. All ranks must pass equal partitions. Objects that you
-    /// add on their home rank need not move. Also throws RankError if partitions differ, or have another number of
+    /// add on their home rank need no transfer. Also throws RankError if partitions differ, or have another number of
     /// ranks.
     DistributedGrid(MPI_Comm communicator, const Partition<Scalar>& partition,
                     const DistributedConfig& config = {});

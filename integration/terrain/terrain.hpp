@@ -18,8 +18,8 @@
 // Units     metres. Heights are coordinates along the up axis.
 // Threads   Several threads may run queries (const functions) at once. During other calls, no other thread may use
 //           the terrain, its grid, or its ChangedGround.
-// Memory    Queries allocate only if hundreds of boxes are below a few points. If memory runs out during a change,
-//           the terrain stays unchanged.
+// Memory    Queries allocate only if a few query points have hundreds of boxes below them. If memory runs out during
+//           a change, the terrain stays unchanged.
 // Bad data  add() and replace() refuse and list triangles with a bad corner. Queries find no ground for bad points
 //           and radii.
 // Misuse    These fail an assertion and change nothing: a number of corners that is no multiple of 3, spans of
@@ -135,8 +135,8 @@ public:
     /// The triangle's proxy; null for a refused triangle.
     [[nodiscard]] ProxyId proxy(std::uint32_t triangle) const;
 
-    /// Returns the number of the triangle with this proxy, such as a proxy that a query found. Returns std::nullopt
-    /// if the terrain has no such proxy. Cost: O(1).
+    /// Returns the index of the triangle that owns this proxy. Use it for proxies that a query found. Returns
+    /// std::nullopt if the terrain has no such proxy. Cost: O(1).
     [[nodiscard]] std::optional<std::uint32_t> triangleOf(ProxyId id) const noexcept {
         const std::uint32_t number = numberOf(id);
         return number != kNone && proxies_[number] == id ? std::optional(number) : std::nullopt;
