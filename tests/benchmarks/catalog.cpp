@@ -119,19 +119,18 @@ std::vector<Benchmark> populationBenchmarks() {
         return benchmark;
     };
     Benchmark ofStatics = population(
-        "creation-static", "the boxes of large-world are created, until the pairs are complete",
+        "creation-static", "the boxes of large-world are created, until all pairs are found",
         PairFrame::create, {2'000'000}, largeWorld());
     ofStatics.largest = 2'000'000;
     ofStatics.frames = 5;  // with btDbvtBroadphase each takes a quarter of a minute
     ofStatics.warmUpFrames = 2;
     ofStatics.onRequest = true;
-    return {
-        population("removal", "1,000 of uniform boxes are destroyed", PairFrame::remove, {50'000}),
-        population("removal-and-pairs", "the same, until the pairs are complete",
-                   PairFrame::removeAndFind, {50'000}),
-        population("creation", "uniform boxes are created, until the pairs are complete",
-                   PairFrame::create, {1'000, 3'000, 10'000}),
-        std::move(ofStatics)};
+    return {population("removal", "1,000 uniform boxes are destroyed", PairFrame::remove, {50'000}),
+            population("removal-and-pairs", "the same, until all pairs are found",
+                       PairFrame::removeAndFind, {50'000}),
+            population("creation", "uniform boxes are created, until all pairs are found",
+                       PairFrame::create, {1'000, 3'000, 10'000}),
+            std::move(ofStatics)};
 }
 
 // --- Cell sizes ----------------------------------------------------------------------------------
@@ -290,9 +289,10 @@ std::vector<Benchmark> pairBenchmarks() {
         return kind.name == kBaseline || kind.name == "hash" || kind.onThreads;
     };
     threads.onRequest = true;
-    Benchmark large = pairs("large-world", "pairs",
-                            "a ground of static boxes, and up to 100 that roam: they alone are set",
-                            {1'000'000}, largeWorld(), PairFrame::setMovers);
+    Benchmark large =
+        pairs("large-world", "pairs",
+              "static boxes, and up to 100 roaming boxes; only the roaming boxes are set",
+              {1'000'000}, largeWorld(), PairFrame::setMovers);
     large.operation = "mover";
     large.warmUpFrames = kFramesOfOptimisation;
     large.onRequest = true;
@@ -321,7 +321,7 @@ std::vector<Benchmark> pairBenchmarks() {
             std::move(tiny),
             stillPairs("quiet", "uniform boxes, all set again in each frame, unchanged",
                        PairFrame::setAll),
-            stillPairs("sleeping", "uniform boxes, half static, half asleep: none is set",
+            stillPairs("sleeping", "uniform boxes, half static, half asleep; no box is set",
                        PairFrame::setNothing),
             std::move(threads),
             std::move(large),

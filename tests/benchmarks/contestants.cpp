@@ -85,7 +85,7 @@ std::vector<ContestantKind> allKinds() {
         if (bullet.ours) {
             ContestantKind batches = bulletKind(bullet, true);
             batches.name += "-batches";
-            batches.description = "the same, told of many objects in one call";
+            batches.description = "the same, with many objects per call";
             kinds.push_back(std::move(batches));
         }
     }

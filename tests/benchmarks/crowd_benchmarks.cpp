@@ -296,7 +296,7 @@ Benchmark crowdBenchmark(const char* name, const char* description, std::size_t 
 std::vector<Benchmark> crowdBenchmarks() {
     return {
         crowdBenchmark("crowd",
-                       "every agent asks who is within 10 m; all move; 98 others on average",
+                       "for each agent, all agents within 10 m: 98 on average; all agents move",
                        50'000, 2, 0.3125, 10),
         crowdBenchmark("circles-2d", "FLAME GPU's Circles: one agent a square metre, within 2 m",
                        1'000'000, 2, 1, 2),

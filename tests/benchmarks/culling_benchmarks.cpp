@@ -289,14 +289,15 @@ std::vector<Benchmark> cullingBenchmarks() {
     return {
         culling("culling-tenth", "a camera among the paper's spheres that sees a tenth of them",
                 "paper", tenthOfTerrain),
-        culling("culling-again", "the same camera once more, with all that it reads in the cache",
+        culling("culling-again", "the same camera again, with its data in the processor's cache",
                 "paper", again),
         culling("culling-four", "four cameras in turn, each of which sees a tenth of them", "paper",
                 fourTenths),
-        culling("culling-all", "a camera far away that sees them all", "paper", fromFar),
+        culling("culling-all", "a distant camera that sees all of the paper's spheres", "paper",
+                fromFar),
         culling("culling-space-tenth", "a camera among uniform boxes that sees a tenth", "uniform",
                 {0.02, 0, 0.9, 0.7}),
-        culling("culling-space-all", "a camera far away that sees all of these", "uniform",
+        culling("culling-space-all", "a distant camera that sees all uniform boxes", "uniform",
                 fromFar)};
 }
 

@@ -269,7 +269,7 @@ void listColours(std::span<const std::uint32_t> colours, std::vector<Answer>& fi
 }
 
 std::vector<Benchmark> effectsBenchmarks() {
-    return {effectsBenchmark("effects-pairs", "roaming spheres, and whose boxes overlap",
+    return {effectsBenchmark("effects-pairs", "roaming spheres and their overlapping boxes",
                              {Effect::motion, Effect::pairs}),
             effectsBenchmark("effects-response", "roaming spheres that bounce off each other",
                              {Effect::motion, Effect::pairs, Effect::response}),

@@ -110,20 +110,21 @@ private:
 }  // namespace
 
 std::vector<Benchmark> neighbourBenchmarks() {
-    return {{.name = "neighbours",
-             .group = "queries",
-             .description = "every agent asks who is within 10 m; all move; four others on average",
-             .operation = "agent",
-             .sizes = {50'000},
-             .admits = answersQueries,
-             .make = [](std::size_t objects, std::uint64_t seed) {
-                 constexpr double kNear = 4;  // on average, within the radius
-                 const double circle = 3.14159265358979 * kRadius * kRadius;
-                 const auto side =
-                     static_cast<float>(std::sqrt(static_cast<double>(objects) * circle / kNear));
-                 return std::make_unique<NeighbourWorkload>(
-                     cubesIn({side, 0, side}, 0.5F, 0.2F)(objects, seed));
-             }}};
+    return {
+        {.name = "neighbours",
+         .group = "queries",
+         .description = "for each agent, all boxes within 10 m: four on average; all agents move",
+         .operation = "agent",
+         .sizes = {50'000},
+         .admits = answersQueries,
+         .make = [](std::size_t objects, std::uint64_t seed) {
+             constexpr double kNear = 4;  // on average, within the radius
+             const double circle = 3.14159265358979 * kRadius * kRadius;
+             const auto side =
+                 static_cast<float>(std::sqrt(static_cast<double>(objects) * circle / kNear));
+             return std::make_unique<NeighbourWorkload>(
+                 cubesIn({side, 0, side}, 0.5F, 0.2F)(objects, seed));
+         }}};
 }
 
 }  // namespace hashphase::benchmarks

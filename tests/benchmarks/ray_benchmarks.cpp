@@ -354,7 +354,7 @@ std::vector<Benchmark> rayStepBenchmarks() {
                          .group = "queries",
                          .description = std::to_string(count) + " rays " +
                                         std::string(length.description) + ", after each step" +
-                                        (isTimed ? ", which is timed, too" : ""),
+                                        (isTimed ? ", which is timed too" : ""),
                          .operation = isTimed ? "step" : "ray",
                          .sizes = {300, 1'000, 3'000, 30'000},
                          .onRequest = true,
@@ -389,20 +389,21 @@ std::vector<Benchmark> rayBenchmarks() {
                   brownian(demos::pileBoxes), rayFromNowhere),
              rays("rays-terrain", "shots of up to 100 m across the paper's terrain, all moving",
                   sceneNamed("paper"), rayOverTerrain, {}, Moves::all),
-             rays("rays-closest", "rays-dense-long, but only the nearest box is wanted", dense,
+             rays("rays-closest", "rays-dense-long, but only the nearest box", dense,
                   rayBetweenBoxes, {Probe::closest}),
-             rays("picking", "all boxes under the pointer, 500 times, among uniform boxes", dense,
+             rays("picking", "all boxes under 500 pixels, among uniform boxes", dense,
                   rayThroughPixel),
-             rays("picking-closest", "picking, but only the nearest box is wanted", dense,
-                  rayThroughPixel, {Probe::closest}),
+             rays("picking-closest", "picking, but only the nearest box", dense, rayThroughPixel,
+                  {Probe::closest}),
              rays("rays-fat", "a box of 1 m cast 5 m far among uniform boxes", dense, shortRay,
                   {Probe::ray, btVector3(0.5F, 0.5F, 0.5F)}),
-             rays("boxes", "what overlaps a box of 2 m, one box at a time, among uniform boxes",
+             rays("boxes",
+                  "all boxes that overlap a box of 2 m, one query at a time, among uniform boxes",
                   dense, rayBetweenBoxes, {Probe::box}),
              rays("interleaved-rays", "set one box, cast one ray, set the next", dense, shortRay,
                   {}, Moves::oneByOne),
-             rays("interleaved-boxes", "set one box, ask for one box, set the next", dense,
-                  shortRay, {Probe::box}, Moves::oneByOne)}) {
+             rays("interleaved-boxes", "set one box, query one box, set the next", dense, shortRay,
+                  {Probe::box}, Moves::oneByOne)}) {
         all.push_back(std::move(benchmark));
     }
     return all;

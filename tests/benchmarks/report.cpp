@@ -34,7 +34,7 @@ void printSetting(const BenchmarkReport& report, const std::vector<ContestantKin
             << " (" << kind.package << ")\n";
     }
     if (report.options.quick) {
-        out << "QUICK: scenes so small and frames so few that the times mean nothing.\n";
+        out << "QUICK: few objects and frames, so the times mean nothing.\n";
     }
     out << '\n'
         << report.settings.frames << " different frames"
@@ -45,7 +45,8 @@ void printSetting(const BenchmarkReport& report, const std::vector<ContestantKin
         << " after " << report.settings.warmUpFrames
         << " to warm up, the contestants in turn in each; seed " << report.options.seed << ".\n"
         << "Times: median (5th-95th percentile). Answers, missing, extra and twice: mean of a "
-           "frame.\nHeap: bytes an object. Own: bytes an object + a pair by our own account.\n\n";
+           "frame.\nHeap: bytes per object. Own: bytes per object + per pair, as the broadphase "
+           "reports them.\n\n";
 }
 
 void printCase(BenchmarkReport& report, std::int64_t number, std::ostream& out) {

@@ -227,7 +227,8 @@ Benchmark snapshots(const char* name, std::string description) {
 }
 
 Benchmark gridSnapshots(const char* name, std::string_view scene) {
-    Benchmark benchmark = snapshots(name, "GridSnapshot of S2-uniform, all moving, and its pairs");
+    Benchmark benchmark =
+        snapshots(name, "GridSnapshot of S2-uniform and its pairs, all boxes moving");
     benchmark.make = [makeScene = sceneNamed(scene)](std::size_t objects, std::uint64_t seed) {
         return std::make_unique<GridSnapshots>(makeScene(objects, seed));
     };

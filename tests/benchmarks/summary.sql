@@ -77,7 +77,7 @@ CREATE TABLE others AS  -- the fastest of those that are not ours, in each case
 SELECT *, min(ms) FROM did WHERE NOT ours AND ms IS NOT NULL GROUP BY "case";
 
 -- Cell sizes, effects and snapshots have tables of their own; among the sweeps, `hash` is told nothing of the motions.
-/* {"print": "How many times faster than each: the median over the frames of the ratio of both times in the same frame."} */
+/* {"print": "Speed: the other broadphase's time divided by hashphase's in the same frame, median over the frames."} */
 SELECT "case", exact, "hash ns", iif(dbvt IS NULL, '-', fixed(dbvt, iif(dbvt < 10, 2, 1)) || 'x') AS "hash / dbvt",
        iif(grid IS NULL, '-', fixed(grid, iif(grid < 10, 2, 1)) || 'x') AS "grid / dbvt", "fastest other",
        iif(that IS NULL, '-', fixed(that, iif(that < 10, 2, 1)) || 'x') AS "hash / that"
@@ -92,18 +92,18 @@ FROM (SELECT outcomes.name AS "case", iif(ours_exact, 'yes', 'NO') AS exact,
            LEFT JOIN others ON others."case" = outcomes."case"
       WHERE outcomes."group" NOT IN ('cell size', 'effects', 'snapshots') AND coalesce(hash.ours, 1));
 
-/* {"print": "Cell sizes, fixed ones in mean edges. Regret: how much longer the automatic ones took than the best fixed one."} */
+/* {"print": "Cell sizes, fixed ones in mean edges. Regret: how much longer automatic sizes took than the best fixed size."} */
 SELECT name AS "case", ms * 1e6 / operations AS "automatic ns", best AS "best fixed",
        best_ms * 1e6 / operations AS "its ns", fixed(100 * regret, 1) || ' %' AS regret
 FROM regrets JOIN cases ON cases.rowid = "case";
 
-/* {"print": "Effects: how many times as long as by hand the same frame took, the median over the frames and the 5th and 95th percentile."} */
+/* {"print": "Effects: the time of a declared frame divided by the time of a hand-written one, median over the frames and 5th and 95th percentile."} */
 SELECT cases.name AS "case", overheads.name AS contestant, frames, fixed(ratio, 4) AS "/ by-hand",
        fixed(low, 4) AS "5 %", fixed(high, 4) AS "95 %", fixed(bound, 2) AS bound,
        CASE WHEN bound IS NULL THEN '-' WHEN ratio <= bound THEN 'yes' ELSE 'NO' END AS holds
 FROM overheads JOIN cases ON cases.rowid = "case";
 
-/* {"print": "Snapshots: what saving and going back take of the frame itself, the median over the frames and the 5th and 95th percentile."} */
+/* {"print": "Snapshots: the times of saving and restoring as shares of the frame's time, median over the frames and 5th and 95th percentile."} */
 SELECT cases.name AS "case", shares.name AS contestant, frames, ms(ms) AS ms, fixed(100 * share, 2) || ' %' AS share,
        fixed(100 * low, 2) || ' %' AS "5 %", fixed(100 * high, 2) || ' %' AS "95 %",
        fixed(1.0 * bytes / objects, 0) AS "bytes an object"
@@ -121,7 +121,7 @@ SELECT 'Regret: median ' || fixed(100 * median(regret), 1) || ' %, worst ' || fi
        || ' % of ' || count(*) || ' cases.'
 FROM regrets HAVING count(*) > 0;
 
-/* {"verdict": "no checked answer of ours was wrong in any case"} */
+/* {"verdict": "every checked answer of hashphase was right"} */
 SELECT 'All answers of ours exact: ' || iif(coalesce(min(ours_exact), 1), 'yes', 'NO'),
        coalesce(min(ours_exact), 1)
 FROM outcomes;

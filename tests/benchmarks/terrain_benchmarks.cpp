@@ -258,10 +258,9 @@ Benchmark groundBenchmark(const char* name, const char* description, GroundQuest
 }  // namespace
 
 std::vector<Benchmark> terrainBenchmarks() {
-    return {groundBenchmark("terrain",
-                            "the ground below each of spheres that roam over 51,200 triangles",
+    return {groundBenchmark("terrain", "the ground below each roaming sphere, 51,200 triangles",
                             GroundQuestion::surface),
-            groundBenchmark("terrain-rest", "where each of these spheres, of 0.3 to 1 m, rests",
+            groundBenchmark("terrain-rest", "the height at which each sphere, of 0.3 to 1 m, rests",
                             GroundQuestion::rest),
             terrainEditBenchmark()};
 }

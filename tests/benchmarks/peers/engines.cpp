@@ -84,7 +84,7 @@ std::string packageText(std::string package, EngineVersion version) {
 std::vector<ContestantKind> joltKinds() {
     ContestantKind jolt =
         engineKind("jolt", "JPH::BroadPhaseQuadTree",
-                   "Jolt's quad tree; what has not moved since the last frame sleeps",
+                   "Jolt's quad tree; boxes that did not move since the last frame sleep",
                    packageText(HASHPHASE_BENCHMARKS_JOLT_PACKAGE, joltVersion()), makeJoltBoxes);
     constexpr std::size_t kMostBodies = 0x800000;  // that Jolt numbers
     jolt.upTo = kMostBodies;
