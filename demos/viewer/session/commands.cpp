@@ -328,7 +328,9 @@ std::vector<CommandKind> makeCommands() {
     add(changes, "eye X Y Z YAW PITCH", "place the free camera [m, degrees]",
         [](S s, A a) { s.camera.place(vectorAt(a, 0), radiansAt(a, 3), radiansAt(a, 4)); },
         {kFar, kFar, kFar, kDegrees});
-    add(changes, "pose MODE NUMBER...", "place the camera, as in a recording", pose, ofPose());
+    add(changes, "pose MODE NUMBER...",
+        "restore a recorded camera: top, free or follow, and all of its 16 numbers [m, rad]", pose,
+        ofPose());
     add(changes, "freeze [on|off]", "keep culling by the present frustum while the camera moves",
         [](S s, A a) { s.freeze(a.onOff(0, s.frozen.has_value())); });
     add(changes, "size WIDTH HEIGHT", "set the picture's size, up to 8,192 x 8,192 [pixels]", size,
@@ -336,12 +338,13 @@ std::vector<CommandKind> makeCommands() {
     add(changes, "pick X Y", "pick the body at a pixel", [](S s, A a) { s.pick(pixelAt(a, 0)); },
         {kFar});
     add(changes, "box X0 Y0 X1 Y1", "select the bodies between two pixels", box, {kFar});
-    add(changes, "drag X0 Y0 X1 Y1", "show the rectangle between two pixels", drag, {kFar});
+    add(changes, "drag X0 Y0 X1 Y1", "draw a rectangle between two pixels, but select nothing",
+        drag, {kFar});
     add(changes, "clear", "clear the selection", clear);
     add(changes, "push [X Y Z]", "add a velocity to the selected bodies [m/s]", push, {kFar});
     add(changes, "delete", "remove the selected bodies",
         [](S s, A) { s.say("removed " + bodiesText(s.removeSelected())); });
-    add(changes, "recolour", "mark the selected bodies",
+    add(changes, "recolour", "mark the selected bodies with a colour, until the scene restarts",
         [](S s, A) { s.say("marked " + bodiesText(s.recolourSelected())); });
     add(shows, "colour [" + anyOf(kColourings) + "|next]", "choose what the colours of bodies show",
         [](S s, A a) { chooseOrNext(a, kColourings.size(), s.options.colouring); },
@@ -365,9 +368,9 @@ std::vector<CommandKind> makeCommands() {
         [](S s, A a) { s.capture(a.words[0], a.has(1) ? static_cast<int>(a.index(1)) : 60); },
         {kWord, wholeFrom(1, 1e6)});
     add(steers, "quit", "end the program", [](S s, A) { s.isOver = true; });
-    add(steers, "print READING...", "print numbers", print);
+    add(steers, "print READING...", "print these readings", print);
     add(steers, "expect READING " + anyOf(kRelations) + " NUMBER",
-        "fail unless a number is as expected", expect,
+        "fail if the reading is not as expected", expect,
         {kWord, {.what = "relation"}, numberFrom(-1e18, 1e18)});
     return all;
 }
@@ -393,7 +396,7 @@ constexpr std::array kKeys{
     KeyBinding{"M", "colour next", "next meaning of colours"},
     KeyBinding{"T", "theme", "light or dark theme"},
     KeyBinding{"U", "push", "push the selected bodies"},
-    KeyBinding{"K", "recolour", "mark the selected bodies"},
+    KeyBinding{"K", "recolour", "mark the selected bodies with a colour"},
     KeyBinding{"Delete", "delete", "remove the selected bodies"},
     KeyBinding{"Escape", "clear", "clear the selection"},
     KeyBinding{"Tab", "panel", "show or hide the panel"},

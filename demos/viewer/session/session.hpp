@@ -215,6 +215,7 @@ private:
 /// A number that can be seen.
 struct Reading {
     std::string_view name;
+    std::string_view help;                       // what it is, and its unit
     std::function<double(const Session&)> read;  // throws InputError where there is none
 };
 

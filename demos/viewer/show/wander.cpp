@@ -64,10 +64,11 @@ void declareWander(CLI::App& app, WanderOptions& options) {
                                        "seed of the scene (default: 1, or the scene file's own)");
     seed->transform(seedUpTo(kMostSeed));
     CLI::Option* commands = app.add_option(
-        "--do", options.commands, "run this command at the start; give the option again for more");
+        "--do", options.commands,
+        "run this command (in quotes) at the start; repeat the option for more commands");
     commands->type_name("COMMAND")->allow_extra_args(false);
-    CLI::Option* script =
-        addFileToRead(app, "--script", options.scriptFile, "then run the commands of this file");
+    CLI::Option* script = addFileToRead(app, "--script", options.scriptFile,
+                                        "run the commands of this file, after those of --do");
     CLI::Option* replay = addFileToRead(app, "--replay", options.replayFile,
                                         "play back this recording, and compare the results; in a "
                                         "window you can pause (P), step (O) and restart (R) it, "
@@ -75,30 +76,31 @@ void declareWander(CLI::App& app, WanderOptions& options) {
     for (CLI::Option* other : {script, scene, file, objects, seed, commands}) {
         replay->excludes(other);
     }
-    app.add_option(
-           "--frames", options.frames,
-           "number of frames (default: until you close the window; 300 without a window, or "
-           "fewer if a command pauses it)")
+    app.add_option("--frames", options.frames,
+                   "number of frames (default: until you close the window; without a window 300, "
+                   "or until a command pauses the simulation)")
         ->transform(wholeFrom(1, 1'000'000'000))
         ->excludes(script)
         ->excludes(replay);
     app.add_option("--time-limit", options.timeLimit,
-                   "stop after this many seconds; a script or a replay that is cut off has failed")
+                   "stop after this many seconds; a script or replay that is not complete then "
+                   "counts as failed")
         ->transform(positiveSeconds());
     app.add_option("--threads", options.threads,
-                   "most threads to simulate on (default: all; Bullet's scenes use one)")
+                   "maximum number of threads (default: all; scenes with Bullet dynamics use one)")
         ->transform(wholeFrom(1, 1024));
     app.add_option("--size", options.size, "size of the picture in pixels, up to 8,192 each way")
         ->type_name("WIDTHxHEIGHT")
         ->capture_default_str();
-    app.add_flag("--headless", options.isHeadless, "open no window: pictures are screenshots only");
+    app.add_flag("--headless", options.isHeadless, "open no window; draw only for screenshots");
     addFileToWrite(app, "--record", options.recordFile,
                    "write a recording to this file at the end");
     addFileToWrite(app, "--screenshot", options.screenshotFile,
                    "write a picture (PNG) to this file at the end");
     addFileToWrite(app, "--json", options.jsonFile, "write all numbers to this file at the end");
     app.add_flag("--quiet", options.quiet, "print no progress");
-    app.add_flag("--list", options.list, "print the scenes, commands, keys and readings, and exit");
+    app.add_flag("--list", options.list,
+                 "print the scenes, keys, commands, effects and readings, and exit");
 }
 
 // --- A run ---------------------------------------------------------------------------------------

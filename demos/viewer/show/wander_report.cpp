@@ -39,7 +39,7 @@ void addScene(const Session& session, Json& json) {
 }  // namespace
 
 void listWander(std::ostream& out) {
-    out << "scenes\n";
+    out << "scenes, with their numbers of bodies\n";
     for (const ViewerScene& scene : viewerScenes()) {
         out << "  " << std::left << std::setw(14) << scene.name << scene.description << " ("
             << withThousands(scene.objects) << ")\n";
@@ -53,11 +53,15 @@ void listWander(std::ostream& out) {
     for (const CommandKind& kind : commandKinds()) {
         out << "  " << std::left << std::setw(54) << kind.usage << kind.help << '\n';
     }
-    out << "\nreadings, for print and expect\n  ";
-    for (const Reading& reading : readings()) {
-        out << reading.name << ' ';
+    EffectSet effects;
+    for (const Effect effect : kAllEffects) {
+        effects.insert(effect);
     }
-    out << '\n';
+    out << "\neffects, for the command effect\n  " << namesOf(effects) << '\n';
+    out << "\nreadings, for print and expect\n";
+    for (const Reading& reading : readings()) {
+        out << "  " << std::left << std::setw(20) << reading.name << reading.help << '\n';
+    }
 }
 
 void tellPhases(const Session& session, bool drewPictures, std::ostream& out) {

@@ -133,11 +133,17 @@ TEST_F(Wander, TellsTheTimesOfTheFormerBroadphaseAfterASwap) {
     expectIn(both, "pair                        - ms");
 }
 
-TEST_F(Wander, ListsScenesKeysAndCommands) {
+TEST_F(Wander, ListsScenesKeysCommandsEffectsAndReadings) {
     const Outcome list = typed("--list");
     EXPECT_EQ(list.code, kExitOk);
-    for (const char* word : {"wander", "bullet-storm", "F12", "pick X Y", "tunnelled"}) {
+    for (const char* word :
+         {"wander", "bullet-storm", "F12", "pick X Y", "\n  motion, terrain, pairs, ",
+          "\n  tunnelled           number of times ",
+          "\n  width               width of the picture [pixels]\n"}) {
         expectIn(list.out, word);
+    }
+    for (const Reading& reading : readings()) {
+        EXPECT_FALSE(reading.help.empty()) << reading.name;
     }
 }
 
