@@ -34,9 +34,11 @@ void declare(CLI::App& app, CompareOptions& options) {
             ->capture_default_str();
     addFileToRead(app, "--file", options.file,
                   "read this file instead of a scene: a Bullet world (.bullet), a Broadmark "
-                  "recording (.aabbs), or boxes as text")
+                  "recording (.aabbs), or text with a box per line: min x y z max x y z [m]")
         ->excludes(scene);
-    app.add_option("--objects", options.objects, "number of objects (default: the scene's own)")
+    app.add_option("--objects", options.objects,
+                   "number of objects (default: see --list), or of boxes to read from a file "
+                   "(default: all)")
         ->transform(wholeFrom(1, 10'000'000));
     app.add_option("--frames", options.frames, "number of frames, warm-up included (default: 120)")
         ->transform(wholeFrom(1, 1'000'000));
@@ -44,11 +46,13 @@ void declare(CLI::App& app, CompareOptions& options) {
                    "broadphases to compare, separated by commas; --list prints all")
         ->type_name("NAME")
         ->delimiter(',');
-    app.add_option("--seed", options.seed,
-                   "seed of the scene, or of how boxes of a file drift (default: 1)")
+    app.add_option(
+           "--seed", options.seed,
+           "seed of the scene, or of the random drift of boxes from a text file (default: 1)")
         ->transform(seedUpTo());
     app.add_option("--reference", options.reference,
-                   "how to find the exact pairs: sweep (along one axis) or brute (every pair)")
+                   "how to find the exact pairs: sweep (along one axis, the default) or brute "
+                   "(test every pair)")
         ->transform(CLI::CheckedTransformer(
                         std::map<std::string, ReferenceMethod>{{"sweep", ReferenceMethod::kSweep},
                                                                {"brute", ReferenceMethod::kBrute}})
@@ -80,13 +84,13 @@ void printLists(std::span<const BroadphaseKind> kinds, std::ostream& out) {
     const auto line = [&out](std::string_view name, std::string_view description) {
         out << "  " << name << std::string(16 - name.size(), ' ') << description << '\n';
     };
-    out << "Scenes:\n";
-    for (const BoxSceneKind& kind : boxSceneKinds()) {
-        line(kind.name, kind.description);
-    }
-    for (const WorldSceneKind& kind : worldSceneKinds()) {
-        line(kind.name, kind.description);
-    }
+    const auto scene = [&line](const auto& kind) {
+        line(kind.name,
+             std::string(kind.description) + " (" + withThousands(kind.defaultObjects) + ")");
+    };
+    out << "Scenes, with their numbers of objects:\n";
+    std::ranges::for_each(boxSceneKinds(), scene);
+    std::ranges::for_each(worldSceneKinds(), scene);
     out << "Broadphases:\n";
     for (const BroadphaseKind& kind : kinds) {
         line(kind.name, kind.description);

@@ -108,8 +108,10 @@ constexpr std::array kBoxScenes{
                  makeBrownian<pileBoxes>},
     BoxSceneKind{"logsizes", "boxes of 0.1-30 m, as many of each order of magnitude", "boxes",
                  30'000, makeBrownian<logSizeBoxes>},
-    BoxSceneKind{"resting", "uniform boxes of which the same 2 % move, 49 % rest, 49 % are static",
-                 "boxes", 100'000, makeBrownian<restingBoxes>},
+    BoxSceneKind{
+        "resting",
+        "uniform boxes of which the same 2 % move, 50 % could move but stay still, 48 % are static",
+        "boxes", 100'000, makeBrownian<restingBoxes>},
     BoxSceneKind{"moving-5", "uniform boxes of which the same 5 % move", "boxes", 100'000,
                  makeBrownian<oneInSoManyMoves<20>>},
     BoxSceneKind{"moving-2", "uniform boxes of which the same 2 % move", "boxes", 100'000,

@@ -315,6 +315,8 @@ TEST(CommandLine, ListsScenesAndBroadphases) {
     for (const char* name : {"paper ", "static-city ", "axis-sweep ", "hash "}) {
         EXPECT_TRUE(holds(outcome.out, std::string("\n  ") + name));
     }
+    EXPECT_TRUE(holds(outcome.out, "400 x 400 m (30,000)\n"));
+    EXPECT_TRUE(holds(outcome.out, "for every 40 of them (20,000)\n"));
 }
 
 TEST(CommandLine, ShowsHelpAndVersion) {
