@@ -23,14 +23,17 @@ constexpr std::array kSubcommands{
         "Run a scene with hashphase and with Bullet's broadphases: check the pairs, compare "
         "the times"},
     Description{"paper",
-                "Measure figures 13 to 15 of the paper again, next to its printed numbers"},
-    Description{"accuracy",
-                "Measure how much time less accuracy saves: the error and the time of each method"},
+                "Measure figures 13 to 15 of the paper (Hastings, Mesit, Guha 2005) again, next to "
+                "its printed numbers"},
+    Description{
+        "accuracy",
+        "Measure how much time is saved by lower accuracy: the error and the time of each method"},
     Description{"stability",
                 "Run hard cases with hashphase and with Bullet's broadphases, and report what each "
                 "one does"},
     Description{"effects",
-                "Measure what each effect of a scene costs, and what the scene loses without it"},
+                "Measure what each effect of a scene (culling, picking, terrain ...) costs, and "
+                "what the scene loses without it"},
     Description{"report",
                 "Run compare, paper, accuracy, effects and stability, and join their results in a "
                 "page"},

@@ -75,7 +75,7 @@ void declareEffects(CLI::App& app, EffectsOptions& options) {
     app.add_flag("--quiet", options.quiet, "print no progress");
     app.add_flag("--list", options.list, "print the scenes, and exit");
     app.add_flag("--show", options.show,
-                 "print the scene as a file to start your own with, and exit");
+                 "print the scene as JSON, to start your own scene file with, and exit");
     app.add_flag("--schema", options.schema, "print the JSON schema of scene files, and exit");
 }
 

@@ -23,7 +23,7 @@ void declarePaper(CLI::App& app, PaperOptions& options) {
         ->delimiter(',')
         ->transform(wholeFrom(2, 1'000'000));
     app.add_option("--frames", options.frames,
-                   "most frames per method (default: 60, with --quick 6)")
+                   "maximum number of frames per method (default: 60, with --quick 6)")
         ->transform(wholeFrom(1, 100'000));
     app.add_option("--radius", options.aiRadius,
                    "radius in metres in which agents count colours; the paper does not give it")
@@ -38,8 +38,8 @@ void declarePaper(CLI::App& app, PaperOptions& options) {
                    "write a page with tables and charts to this file");
     app.add_option(
            "--time-limit", options.timeLimit,
-           "leave out all that is not measured after this many seconds; hashphase then runs before "
-           "its rivals")
+           "stop measuring after this many seconds; with this option, hashphase is measured before "
+           "the other methods")
         ->transform(positiveSeconds());
     app.add_flag("--ms", options.showMilliseconds,
                  "print milliseconds per frame instead of frames per second");

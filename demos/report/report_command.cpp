@@ -38,7 +38,9 @@ struct ReportOptions {
 void declareReport(CLI::App& app, ReportOptions& options) {
     app.add_flag("--quick", options.isQuick,
                  "measure less: 90 seconds instead of a quarter of an hour");
-    app.add_option("--only", options.only, "run only these parts, separated by commas")
+    app.add_option(
+           "--only", options.only,
+           "run only these of compare, paper, accuracy, effects and stability, separated by commas")
         ->type_name("NAME")
         ->delimiter(',');
     addFileToWrite(app, "--html", options.htmlFile, "write the page to this file")

@@ -70,7 +70,7 @@ void declareStability(CLI::App& app, StabilityOptions& options) {
         ->capture_default_str();
     app.add_option("--case-time-limit", options.caseSeconds,
                    "seconds of processor time that a broadphase gets for each case; hashphase gets "
-                   "ten times this limit")
+                   "ten times this limit, so that it does not fail on a slow machine")
         ->transform(positiveSeconds())
         ->capture_default_str();
     app.add_option("--time-limit", options.timeLimit, "start no case after this many seconds")

@@ -59,15 +59,15 @@ void declareSwarm(CLI::App& app, SwarmOptions& options) {
         ->transform(wholeFrom(1, 1'000'000))
         ->capture_default_str();
     app.add_option("--ranks", options.ranks,
-                   "number of processes to start with mpirun, whose exit status after Ctrl-C is 1 "
-                   "(default: the processes that mpirun has started, or one)")
+                   "number of ranks (MPI processes) to start with mpirun (default: the ranks that "
+                   "mpirun has started, or one). After Ctrl-C, mpirun's exit status is 1")
         ->transform(wholeFrom(1, 100'000));
     app.add_option("--seed", options.seed, "seed of the spheres")->transform(seedUpTo());
     app.add_option(
            "--rebalance-above", options.rebalanceAbove,
-           "divide space again when the busiest rank has more than this many times the mean "
-           "load")
-        ->check(CLI::Range(1.0, 1e6))
+           "divide space again when the load of a rank, its estimated work for pairs, exceeds this "
+           "many times the mean load")
+        ->check(CLI::Range(1.0, 1e6).description("1 to 1,000,000"))
         ->capture_default_str();
     app.add_option("--patience", options.patience,
                    "give up when a rank does not answer for this many seconds")
@@ -80,7 +80,7 @@ void declareSwarm(CLI::App& app, SwarmOptions& options) {
         ->capture_default_str();
     addFileToWrite(app, "--csv", options.csvFile, "write a row per frame and rank to this file");
     app.add_flag("--unchecked", options.unchecked,
-                 "skip the run in one process, with which pairs and times are compared");
+                 "do not also run in one process to compare pairs and times");
     app.add_flag("--plan", options.plan,
                  "print what 64 to 16,384 ranks would send each other, and exit");
     app.add_flag("--quiet", options.quiet, "print no progress");

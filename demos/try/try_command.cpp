@@ -43,15 +43,15 @@ void declare(CLI::App& app, TryOptions& options) {
         "hashphase try [OPTIONS] -- PROGRAM [ARGUMENT]...\n\n"
         "PROGRAM must link Bullet's shared libraries, and use btDbvtBroadphase, btAxisSweep3 or "
         "bt32BitAxisSweep3. While hashphase replaces them, the trees in btDbvtBroadphase::m_sets "
-        "are empty.\n"
-        "Ctrl-C ends the program, and skips further runs.\n"
+        "are empty: code that reads these trees finds no objects.\n"
+        "Ctrl-C ends the program, skips further runs, and prints the results so far.\n"
         "Times are the processor time of the thread that makes the steps, so other programs do not "
         "lengthen them.");
     CLI::Option* verify = app.add_flag(
         "--verify", options.verify,
         "run once, with both broadphases, and compare the pairs of both with the exact pairs in "
         "every step");
-    app.add_option("--runs", options.runs, "runs with each broadphase, in turns")
+    app.add_option("--runs", options.runs, "number of runs with each broadphase, alternating")
         ->capture_default_str()
         ->transform(wholeFrom(1, 1000))
         ->excludes(verify);
@@ -60,11 +60,14 @@ void declare(CLI::App& app, TryOptions& options) {
     app.add_option("--seconds", options.seconds, "end the program after this many seconds")
         ->transform(positiveSeconds());
     app.add_option("--precision", options.precision,
-                   "precision of the Bullet that the program loads while it runs")
+                   "precision of Bullet, only for a program that loads Bullet while it runs "
+                   "(dlopen); otherwise hashphase detects it")
         ->check(CLI::IsMember({"single", "double"}))
         ->type_name("NAME");
     addFileToWrite(app, "--json", options.jsonFile, "write all results to this file");
-    app.add_flag("--quiet", options.quiet, "print only results, and what is waited for");
+    app.add_flag("--quiet", options.quiet,
+                 "print only results, and a notice if hashphase waits for processes that the "
+                 "program left running");
 }
 
 // --- What is tried -------------------------------------------------------------------------------
