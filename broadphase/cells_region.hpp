@@ -12,7 +12,7 @@
 namespace hashphase {
 
 /// Finds every proxy whose box touches a cell that the ball's bounding box touches. This estimates the proxies in the
-/// ball, and computes no distances. Key: 0.
+/// ball, and computes no distances. All keys are 0.
 ///
 ///     CollectCount count;
 ///     grid.visit(CellsRegion<float>(center, 20, grid.cellSize()), count);

@@ -26,8 +26,8 @@ enum class Containment : std::uint8_t { touching, inside };
 enum class Touch : std::uint8_t { exact, byPlanes };
 
 /// Finds every box that touches a convex volume, or that lies wholly inside it (see Containment). The volume is the
-/// set of points p with plane.signedDistance(p) >= 0 for each plane. Key: 0. Boxes in cells wholly inside the volume
-/// need no test. Cost: as Grid::visit().
+/// set of points p with plane.signedDistance(p) >= 0 for each plane. All keys are 0. Boxes in cells wholly inside the
+/// volume need no test. Cost: as Grid::visit().
 ///
 /// The volume contains its surface. Rounding may add boxes that are outside by about 1e-6 of the coordinates in
 /// single precision, or 1e-9 in double. Without planes, the volume is all of space. A volume is empty if it contains

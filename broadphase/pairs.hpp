@@ -104,9 +104,9 @@ public:
     /// ignore() for each pair. Skips pairs with a proxy that is not alive. Cost: O(pairs) amortised.
     PairChanges ignore(std::span<const ProxyPair> pairs) &;
 
-    /// Ends ignore(). If the two proxies overlap, or touched along a path at the last update, and their groups allow
-    /// it, asks the filter at once. Returns an accepted pair as born, and perhaps died pairs as in findPairsNow().
-    /// Skips pairs that are not ignored. Cost: O(1) per pair.
+    /// Ends ignore(). Asks the filter at once if the groups allow the pair, and the two proxies overlap or touched
+    /// along a path at the last update. Returns an accepted pair as born. May also return died pairs: see
+    /// findPairsNow(). Skips pairs that are not ignored. Cost: O(1) per pair.
     PairChanges stopIgnoring(const ProxyPair& pair, PairFilter filter) &;
     PairChanges stopIgnoring(std::span<const ProxyPair> pairs, PairFilter filter) &;
 

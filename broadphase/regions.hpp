@@ -32,7 +32,8 @@
 
 namespace hashphase {
 
-/// Every box that overlaps the closed `box`, as overlaps() decides, also for infinite and inverted boxes. Key: 0.
+/// Every box that overlaps the closed `box`, as overlaps() decides, also for infinite and inverted boxes. All keys
+/// are 0.
 template <class Scalar>
 struct BoxRegion {
     static constexpr bool kIsItsBounds = true;

@@ -90,8 +90,8 @@ public:
 
     /// Sets the proxy's box. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), also reads the
     /// proxy's group and mask, even if the box is unchanged. Cost: O(1), or one comparison if the box is unchanged.
-    /// With SpatialHashConfig::sweep, plus getAabb() of the body's shape. For ghosts, eagerGroups, and a box that
-    /// does not touch the previous box: as createProxy().
+    /// With SpatialHashConfig::sweep, plus getAabb() of the body's shape. As createProxy() for ghosts, for proxies in
+    /// eagerGroups, and if the new box does not touch the previous box.
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
@@ -344,7 +344,7 @@ private:
     void renewPairsOfOtherCache(btBroadphaseProxy& proxy, btDispatcher* dispatcher);
     void removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
     void endProxy(Proxy& proxy, int uniqueId, std::uint64_t changeCount, btDispatcher* dispatcher);
-    // Copies the unique ids, to see which proxies callbacks destroy.
+    // Copies the proxies' unique ids, to detect later which proxies were destroyed by callbacks.
     static void noteIds(std::span<btBroadphaseProxy* const> proxies, std::vector<int>& ids);
     static void checkNamedOnce(std::span<const int> ids);
     // Returns whether this broadphase, or another world of its WorldsBroadphase, is calculating on this thread.

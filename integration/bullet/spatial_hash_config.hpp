@@ -56,7 +56,7 @@ struct SpatialHashConfig {
     /// the pairs that groups and masks refuse. Bullet's own caches do. If true, the callback or cache is asked only
     /// about pairs that groups and masks accept. Proxies that may pair with no proxy, for example with a mask of 0,
     /// cost nothing. If false, the callback or cache decides instead of groups and masks. It is asked about every
-    /// pair of overlapping proxies, and again about a refused pair when one of its proxies has changed.
+    /// pair of overlapping proxies, and again about a refused pair when the box of one of its proxies changes.
     bool filterRefusesMore = false;
 
     /// If true, a query ends when process() of its callback returns false. Off by default: Bullet's broadphases

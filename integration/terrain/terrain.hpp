@@ -103,8 +103,8 @@ public:
     /// Replaces the corners of the triangles with numbers `first`, `first` + 1 and so on. Refuses triangles as add()
     /// does. Triangles keep their numbers. A triangle keeps its proxy if it was accepted before and is accepted now.
     /// Unchanged triangles cost no update of the grid, and ChangedGround does not record them. To change how many
-    /// triangles there are, call remove() and add(). Allocates only if a triangle is refused now or was before.
-    /// Asserted: none of the numbers is free. Cost: O(given triangles).
+    /// triangles there are, call remove() and add(). Allocates only if a replaced triangle was refused before, or is
+    /// refused now. Asserted: none of the numbers is free. Cost: O(given triangles).
     AddedTriangles replace(std::uint32_t first, std::span<const Point> corners);
     AddedTriangles replace(std::uint32_t first, std::span<const Point> vertices,
                            std::span<const std::uint32_t> indices);
