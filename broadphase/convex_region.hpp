@@ -77,7 +77,7 @@ public:
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:
-    // The library's plane type, without alignment.
+    // The library's plane type, which needs no SIMD alignment.
     using OwnPlane = detail::Plane<Scalar>;
     // Has space for one plane too many, for the constructor's assertion.
     using PlaneList = detail::FixedList<OwnPlane, kMostPlanes + 1>;

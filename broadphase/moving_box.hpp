@@ -55,7 +55,7 @@ template <class Scalar>
 
 /// Upper bound of the relative error of computed times.
 inline constexpr double kTimeDoubt = 0x1p-49;
-/// For numbers below this value, kTimeDoubt may not hold, because they underflow.
+/// If a number is smaller than this in magnitude, products may underflow, and errors may exceed kTimeDoubt.
 inline constexpr double kTiniest = 0x1p-1000;
 
 }  // namespace detail

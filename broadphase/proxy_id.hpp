@@ -38,7 +38,7 @@ struct ProxyPair {
 };
 
 /// How a proxy will probably behave: mobile like a body, or resting like a wall. This hint changes no result: a
-/// resting proxy may move, and an unchanged mobile proxy comes to rest.
+/// resting proxy may move, and the grid soon treats an unchanged mobile proxy as resting.
 enum class Mobility : std::uint8_t { mobile, resting };
 
 namespace detail {

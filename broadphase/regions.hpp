@@ -81,7 +81,8 @@ public:
                 Vector3<Scalar>::Constant(isEmpty ? Limits::quiet_NaN() : Limits::infinity());
             return {-all, all};
         }
-        // Rounded outward: key() rounds, but must not find a box outside the bounds.
+        // Rounded outward: because key() rounds, it may accept a box slightly beyond the radius. The bounds must
+        // touch that box too.
         const Scalar reach = center_.cwiseAbs().maxCoeff() + radius_;
         const Scalar padded = radius_ + 4 * Limits::epsilon() * reach + Limits::min();
         const Vector3<Scalar> half = Vector3<Scalar>::Constant(padded);

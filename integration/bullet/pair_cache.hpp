@@ -127,8 +127,8 @@ public:
     // --- One pair --------------------------------------------------------------------------------
 
     /// Returns the pair, and adds it if it is missing. Returns NULL if the filter refuses it. Calls the ghost
-    /// callback for a new pair. If the cache already has kMostPairs pairs, throws std::length_error and changes
-    /// nothing. Cost: O(1).
+    /// callback for a new pair. If the cache has kMostPairs pairs, throws std::length_error, even for a pair that
+    /// exists, and changes nothing. Cost: O(1).
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
                                          btBroadphaseProxy* proxy1) override;
 
@@ -288,8 +288,8 @@ public:
     void setWatcher(detail::CacheWatcher* watcher) noexcept { watcher_ = watcher; }
 
 private:
-    // An edge in the chain of a proxy. Each chained pair has two: edge 2 * index in the chain of the lower unique id,
-    // and the next edge in the chain of the other.
+    // An edge in the chain of a proxy. Each chained pair has two: edge 2 * index is in the chain of the proxy with
+    // the lower unique id, edge 2 * index + 1 in the chain of the other proxy.
     struct Link {
         std::uint32_t next;
         std::uint32_t previous;

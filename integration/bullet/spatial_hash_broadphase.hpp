@@ -99,10 +99,11 @@ public:
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box (aabbMin, aabbMax), passes
-    /// btRayAabb2() with the callback's own fields. Tests each box as the last setAabb() set it. Order: roughly from
-    /// near to far; do not rely on it. A ray with NaN or infinite ends, or of length 0, finds nothing. If the square
-    /// of a ray's length overflows, Bullet's fields are NaN or zero, as under btDbvtBroadphase. For such rays, query
-    /// grid() with a RayRegion. Cost: proportional to the boxes near the ray; at most one test for each proxy.
+    /// btRayAabb2() with the callback's own fields. Sees every setAabb() at once, before pairs are calculated. Order:
+    /// roughly from near to far; do not rely on it. A ray with NaN or infinite ends, or of length 0, finds nothing.
+    /// If the square of a ray's length overflows, Bullet's fields are NaN or zero, as under btDbvtBroadphase. For
+    /// such rays, query grid() with a RayRegion. Cost: proportional to the boxes near the ray; at most one test for
+    /// each proxy.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
@@ -227,8 +228,8 @@ public:
     void collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,
                                 btDispatcher* dispatcher);
 
-    /// Frees the algorithms and contacts of the proxy's pairs, also in ghosts; the pairs stay. After a change of
-    /// shape, scale, collision margin or other contact data, call this function and
+    /// Frees the algorithms and contacts of the proxy's pairs, also in the pair caches of ghost objects. The pairs
+    /// stay. After a change of shape, scale, collision margin or other contact data, call this function and
     /// btCollisionWorld::updateSingleAabb() before the next step. If the cache has no deferred removal, calls the
     /// ghost callback as if each pair was removed and added again. If the callback itself removes a pair, it is
     /// called again for this removal. Cost: as PairCache::renewPairsContainingProxy(); with another cache, a pass

@@ -44,7 +44,7 @@ template <class Scalar>
 
 namespace detail {
 
-/// The left, bottom, right and top edges.
+/// The left, bottom, right and top edges of a rectangle on the screen.
 template <class Scalar>
 using ScreenEdges = std::array<Scalar, 4>;
 

@@ -30,7 +30,7 @@ struct Question {
     enum class Shape : std::uint8_t { box, sphere, ray };
 
     Shape shape = Shape::box;
-    Aabb<Scalar> extent;  ///< the box; for a ray: box around each ray point, relative to it [m]
+    Aabb<Scalar> extent;  ///< the box; for a ray: the box that moves along it, relative to the point [m]
     Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< start of a ray, centre of a sphere [m]
     Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< end of a ray [m]
     Scalar radius = 0;                               ///< of a sphere [m]

@@ -18,8 +18,8 @@
 // Units     metres. Heights are coordinates along the up axis.
 // Threads   Several threads may run queries (const functions) at once. During other calls, no other thread may use
 //           the terrain, its grid, or its ChangedGround.
-// Memory    Queries allocate only if a few query points have hundreds of boxes below them. If memory runs out during
-//           a change, the terrain stays unchanged.
+// Memory    Queries allocate only if hundreds of boxes lie below the query points that are answered together. If
+//           memory runs out during a change, the terrain stays unchanged.
 // Bad data  add() and replace() refuse and list triangles with a bad corner. Queries find no ground for bad points
 //           and radii.
 // Misuse    These fail an assertion and change nothing: a number of corners that is no multiple of 3, spans of
