@@ -18,7 +18,7 @@
 // Units     metres. Heights are coordinates along the up axis.
 // Threads   Several threads may run queries (const functions) at once. During other calls, no other thread may use
 //           the terrain, its grid, or its ChangedGround.
-// Memory    Queries allocate only if hundreds of boxes lie below the query points that are answered together. If
+// Memory    Queries answer 16 points at a time, and allocate only if hundreds of boxes lie below these points. If
 //           memory runs out during a change, the terrain stays unchanged.
 // Bad data  add() and replace() refuse and list triangles with a bad corner. Queries find no ground for bad points
 //           and radii.
