@@ -45,8 +45,8 @@ template <class Scalar>
     return {min, max};
 }
 
-/// Returns the box from `center` - `halfExtents` to `center` + `halfExtents` [m]. The corners are rounded. Negative
-/// half extents make an inverted box.
+/// Returns the box from `center` - `halfExtents` to `center` + `halfExtents` [m]. Coordinates may have rounding
+/// errors. Negative half extents make an inverted box.
 template <class Scalar>
 [[nodiscard]] inline Aabb<Scalar> boxAround(
     const Vector3<Scalar>& center, const Vector3<std::type_identity_t<Scalar>>& halfExtents) {
@@ -92,8 +92,8 @@ template <std::floating_point Scalar>
     return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
-/// True when all six coordinates have the same bits. The code compares single numbers: a SIMD read of numbers just
-/// written would stall.
+/// True when each coordinate of a has the same bits as in b. The code compares one number at a time, because a SIMD
+/// read of numbers just written would stall.
 template <class Scalar>
 [[nodiscard]] inline bool isSameBits(const Aabb<Scalar>& a, const Aabb<Scalar>& b) noexcept {
     const Scalar* aMin = a.min().data();

@@ -11,18 +11,18 @@
 
 namespace hashphase {
 
-/// Finds every proxy whose box touches a cell that the ball's bounding box touches. This estimates the proxies in the
-/// ball, and computes no distances. All keys are 0.
+/// Finds every proxy whose box touches a cell of a ball: a cell that the ball's bounding box touches. This
+/// approximates the proxies in the ball, without computing distances. The key of every proxy is 0.
 ///
 ///     CollectCount count;
 ///     grid.visit(CellsRegion<float>(center, 20, grid.cellSize()), count);
 ///
-/// The result includes all proxies that a PositionRegion or SphereRegion of the ball finds. Its other proxies, apart
-/// from rounding, are nearer to the centre than radius + cellSize on each axis: at most sqrt(3) * (radius + cellSize)
-/// away.
+/// The result includes all proxies that a PositionRegion or SphereRegion of the ball finds. All other
+/// proxies found, apart from rounding, are at most radius + cellSize from the centre on each axis: at most
+/// sqrt(3) * (radius + cellSize) away.
 ///
 /// Source: Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005,
-/// "AI proximity decisions". (The paper's loop omits the last cells.)
+/// "AI proximity decisions". (Unlike this class, the paper's loop omits the last cells.)
 template <class Scalar>
 class CellsRegion {
 public:
@@ -47,7 +47,7 @@ public:
     [[nodiscard]] Scalar key(const Aabb<Scalar>& box) const noexcept {
         return overlaps(bounds_, box) ? Scalar(0) : Scalar(-1);
     }
-    /// Returns the box around all cells of the region [m]; NaN if the region is empty.
+    /// Returns the box around all cells of the region [m]; a NaN box if the region is empty.
     [[nodiscard]] const Aabb<Scalar>& bounds() const noexcept { return bounds_; }
 
 private:

@@ -3,7 +3,7 @@
 
 // Collectors receive the proxies that a query finds, and decide which to keep. A collector has two members:
 //
-//   add(id, key)   receives each proxy in the region, at most once
+//   add(id, key)   receives each proxy in the region whose key is at most limit(); no proxy twice
 //   limit()        returns the largest key still wanted; a negative limit ends the query
 //
 //     std::vector<ProxyId> found;
@@ -15,7 +15,7 @@
 // Keys     The region defines the keys (regions.hpp): 0, a squared distance [m^2], or a fraction of a path.
 // Own      Any class with these members is a collector. add() receives keys of the grid's Scalar; limit() may return
 //          float or double. For collectors that change the grid, see Callbacks in grid.hpp.
-// Filters  CollectIf (proxy_filter.hpp) passes only proxies that a filter accepts to another collector.
+// Filters  CollectIf (proxy_filter.hpp) passes proxies to another collector, but only those that a filter accepts.
 
 #include <broadphase/proxy_id.hpp>
 
@@ -167,12 +167,12 @@ private:
     std::vector<KeyedProxy<Scalar>>* nearest_;  // a heap with the largest key on top
 };
 
-/// Sets a bit for every proxy found: bit i % 64 of word i / 64, where i is ProxyId::index. Bits are the cheapest list
-/// of many proxies. Grid::idAt() returns the id of an index.
+/// Sets a bit for every proxy found: bit i % 64 of word i / 64, where i is ProxyId::index. Bits are the cheapest
+/// way to store many found proxies. Grid::idAt() returns the id of an index.
 class CollectBits {
 public:
-    /// Sets bits in the caller's vector, and enlarges it as needed. Bits already set stay set. No other code may
-    /// resize the vector while the collector is in use.
+    /// Sets bits in the caller's vector, and enlarges it as needed. Bits already set stay set. From this
+    /// constructor until the last query with the collector, no other code may resize the vector.
     explicit CollectBits(std::vector<std::uint64_t>& bits) noexcept
         : bits_(&bits), words_(bits.data()), wordCount_(bits.size()) {}
 
@@ -197,8 +197,8 @@ private:
 };
 
 namespace detail {
-/// True when the proxy is in the region (key >= 0) and the collector wants it (key <= limit()). The limit may have
-/// another precision.
+/// True when the proxy is in the region (key >= 0) and the collector wants it (key <= limit()). key and limit()
+/// may differ in precision.
 template <class Scalar, class Collector>
 [[nodiscard]] bool isWanted(Scalar key, const Collector& collector) {
     const auto limit = collector.limit();

@@ -20,26 +20,26 @@ namespace hashphase {
 /// How much of a box must be in a volume: at least one point (touching), or the whole box (inside).
 enum class Containment : std::uint8_t { touching, inside };
 
-/// Which boxes count as touching. exact: boxes that share a point with the volume. byPlanes: faster, but also finds a
-/// few boxes near the volume's edges. byPlanes rejects only boxes wholly outside a plane of the volume, or of the
-/// volume's outline along the x axis. Containment::inside ignores Touch.
+/// Which boxes count as touching. exact: boxes that share a point with the volume. byPlanes: faster, but also finds
+/// a few boxes outside the volume, near its edges. byPlanes rejects a box only if it lies wholly outside one
+/// plane of the volume, or misses the volume in a view along the x axis. Containment::inside ignores Touch.
 enum class Touch : std::uint8_t { exact, byPlanes };
 
 /// Finds every box that touches a convex volume, or that lies wholly inside it (see Containment). The volume is the
-/// set of points p with plane.signedDistance(p) >= 0 for each plane. All keys are 0. Boxes in cells wholly inside the
-/// volume need no test. Cost: as Grid::visit().
+/// set of points p with plane.signedDistance(p) >= 0 for each plane. Every box found has key 0. Boxes in cells
+/// wholly inside the volume need no test. Cost: as Grid::visit().
 ///
-/// The volume contains its surface. Rounding may add boxes that are outside by about 1e-6 of the coordinates in
-/// single precision, or 1e-9 in double. Without planes, the volume is all of space. A volume is empty if it contains
-/// no point, or if a plane has a NaN or an infinite normal.
+/// The volume contains its surface. Because of rounding, queries may also find boxes outside, at a distance up to
+/// about 1e-6 of the coordinates (1e-9 in double precision). Without planes, the volume is all of space. A
+/// volume is empty if it contains no point, or if a plane has a NaN or an infinite normal.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT ConvexRegion {
 public:
     using Plane = Eigen::Hyperplane<Scalar, 3>;
     static constexpr std::size_t kMostPlanes = detail::kMostOwnPlanes;
 
-    /// Plane normals point inwards; any length is valid. Asserted: at most kMostPlanes planes. Cost: O(p^4) for p
-    /// planes; some microseconds for a frustum.
+    /// Plane normals must point inwards, and may have any length. Asserted: at most kMostPlanes planes. Cost: O(p^4)
+    /// for p planes; a few microseconds for a frustum.
     explicit ConvexRegion(std::span<const detail::Plane<Scalar>> planes,
                           Containment containment = Containment::touching,
                           Touch touch = Touch::exact);
@@ -56,8 +56,8 @@ public:
     /// True when the volume is empty, so no box is found.
     [[nodiscard]] bool isEmpty() const noexcept { return isEmpty_; }
 
-    /// True when `other` is empty, or lies inside this volume, at least `margin` [m] from each of its planes. False
-    /// if rounding leaves doubt, or if the corners of `other` cannot be computed.
+    /// True when `other` is empty, or when it lies inside this volume, at least `margin` [m] from every plane of this
+    /// volume. False if rounding leaves doubt, or if the corners of `other` cannot be computed.
     [[nodiscard]] bool contains(const ConvexRegion& other, Scalar margin = 0) const;
 
     /// Returns the volume with its planes moved outwards by `distance` [m]. The result contains every point within
@@ -68,12 +68,12 @@ public:
     [[nodiscard]] ConvexRegion exact() const;
 
     /// True when a and b have equal planes in the same order, equal Containment and equal Touch. Volumes that are
-    /// empty because of a NaN may compare equal.
+    /// empty because of a NaN may compare equal even if their planes differ.
     friend bool operator==(const ConvexRegion& a, const ConvexRegion& b) noexcept {
         return a.isSameAs(b);
     }
 
-    /// The planes that grids test: the given planes, and more that reject outside boxes.
+    /// The planes that grids test: the given planes, and derived planes that reject more boxes.
     [[nodiscard]] const detail::Volume<Scalar>& volume() const noexcept { return volume_; }
 
 private:

@@ -7,14 +7,14 @@
 //
 // HASHPHASE_<COMPONENT>_EXPORT           marks an exported function or class
 // HASHPHASE_<COMPONENT>_TEMPLATE_EXPORT  marks a class template that a library instantiates
-// HASHPHASE_INSTANCE_EXPORT              marks the instantiation of such a template, for MSVC
+// HASHPHASE_INSTANCE_EXPORT              marks the instantiation of an exported class template, for MSVC
 // HASHPHASE_ONE_FOR_ALL                  marks a header's thread_local variable that all libraries of a program share
-// HASHPHASE_SHARES_VARIABLES             1 if libraries can share such a variable; 0 with DLLs, where a function of
-//                                        one library returns the variable
+// HASHPHASE_SHARES_VARIABLES             1 if libraries can share a thread_local variable; 0 with DLLs, where a
+//                                        function of one library returns the variable
 // HASHPHASE_ASK_LINKER_FOR(x)            MSVC only: linking fails if the grid's library does not define the const
 //                                        char hashphase::x, even if the compiler drops unused references
 
-// Older standards stop here: public headers include this header before their C++20 code.
+// Compilers in C++17 mode or older stop here: public headers include this header before their C++20 code.
 #if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L
 #error "hashphase needs C++20. Compile with -std=c++20 or /std:c++20, or ask CMake for cxx_std_20."
 #endif

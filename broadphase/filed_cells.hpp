@@ -8,11 +8,11 @@
 //
 // Cells     Resting and mobile proxies have separate cells, both in several sizes, so cells overlap. No edge of a
 //           proxy is longer than the edges of its cell. Along an axis with few proxies per cell, for example
-//           vertically on a terrain, one cell may span all proxies of its size.
-// A proxy   is stored in the cell that contains the min corner of its box. For a trembling proxy, that box is larger:
-//           the proxy moves within it (GridConfig::slack).
+//           vertically on a terrain, one cell may span all proxies that have this cell size.
+// A proxy   is stored in the cell that contains the min corner of its box. For a trembling proxy, the grid uses
+//           a larger box, within which the proxy moves (GridConfig::slack).
 // Unfiled   Some proxies are in no cell, and every query reads them: the largest proxies, all proxies of a grid with
-//           fewer than about 32, and proxies that changed since the last sort into cells.
+//           fewer than about 32 proxies, and proxies that changed since the last sort into cells.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/export.hpp>
@@ -35,7 +35,7 @@ struct FiledCell {
 template <class Scalar>
 struct FiledCells {
     std::vector<FiledCell<Scalar>> cells;  ///< the fullest cell first
-    std::vector<ProxyId> unfiled;          ///< proxies in no cell, in ascending order
+    std::vector<ProxyId> unfiled;          ///< proxies in no cell, sorted by id
 };
 
 /// Lists all cells that contain proxies, and the proxies in no cell. Unlike a query, it does not sort changed proxies

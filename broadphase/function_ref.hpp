@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A reference to a function, for parameters: cheaper than std::function, which owns a copy.
+// A reference to a function. Use it as a parameter type: it is cheaper than std::function, which owns a copy.
 //
 //     void visitAll(FunctionRef<void(ProxyId)> visit);
 //     visitAll([&](ProxyId id) { ... });                     // right: the lambda exists until the call ends
@@ -36,8 +36,8 @@ public:
               return called(std::forward<Arguments>(arguments)...);
           }) {}
 
-    /// operator() returns adapter(callable, arguments...). The adapter's type has no data members, like a lambda
-    /// without captures.
+    /// operator() returns adapter(callable, arguments...). The adapter's type must have no data members, like a
+    /// lambda without captures.
     template <class Callable, class Adapter>
         requires(std::is_empty_v<Adapter>&&
                      std::is_invocable_r_v<Result, Adapter, Callable&, Arguments...>)

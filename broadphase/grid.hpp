@@ -4,23 +4,23 @@
 // The grid: stores the boxes of up to 2^28 proxies in the cells of a spatial hash, and finds them in queries.
 //
 // A frame    Move the proxies that changed, then call update() once, or Pairs::update() if the grid has Pairs.
-// Queries    see every change at once, because they also read a list of changes. When reading this list has cost a
-//            third of an update, a query sorts the proxies into cells. A grid that is never updated stays correct,
+// Queries    see every change immediately, because they also read a list of changes. When reading this list has cost
+//            a third of an update, a query sorts the proxies into cells. A grid that is never updated stays correct,
 //            with bounded memory.
-// Threads    Queries are const: any number may run at once, also from collectors. During a non-const call, no other
-//            thread may use the grid.
+// Threads    Queries are const: any number may run at the same time, and collectors may run queries too. During a
+//            non-const call, no other thread may use the grid.
 // Units      metres, or any other unit of length used throughout
 // Bad data   A query never finds a box with a NaN. nanCount() counts such boxes, and the message handler reports the
 //            first. overlaps() decides exactly for infinite, huge and inverted boxes.
 // Denormals  If threads flush denormals (below 1.2e-38; double: 2.2e-308) to 0, more boxes touch. All threads must
 //            use the same mode.
 // Callbacks  A collector may query the grid. In visit(), it may also change the grid, if no other thread queries
-//            until visit() returns. visit() never offers a removed proxy; it may offer added proxies, and moved
-//            proxies again. Asserted: collectors of visitEach() or ConvexRegion queries, and PairFilters, change
-//            nothing; no collector calls update() or shiftOrigin().
+//            until visit() returns. visit() never offers a removed proxy; it may offer proxies added meanwhile,
+//            and may offer moved proxies twice. Asserted: collectors of visitEach() or ConvexRegion queries, and
+//            PairFilters, do not change the grid; no collector calls update() or shiftOrigin().
 // Memory     Calls that allocate can throw std::bad_alloc. No data is lost, and you can repeat the call. remove(),
-//            and move() without `parallelFor`, never allocate. Queries that sort proxies into cells need a second
-//            table of the mobile proxies.
+//            and move() without `parallelFor`, never allocate. Queries that sort proxies into cells need memory
+//            for a second table of the mobile proxies.
 // Misuse     Asserted: ids are valid. If assertions are off, a call with a null or stale id does nothing; box()
 //            returns a NaN box. An id of another grid counts as stale, unless its index and generation match a proxy
 //            of this grid.
@@ -86,7 +86,7 @@ public:
 
     /// Allocates memory for `count` proxies in total. Until releaseUnusedMemory(), add() allocates nothing for up to
     /// `count` proxies. Exception: the first proxy with groups other than ProxyGroups{}; see setGroups(). Throws
-    /// std::length_error beyond 2^28. Cost: O(count) if the capacity grows.
+    /// std::length_error beyond 2^28 proxies. Cost: O(count) if the capacity grows.
     void reserve(std::size_t count);
 
     /// Sets the proxy's box. If no bit changes, the call costs one comparison. Cost: O(1) amortised.
@@ -101,8 +101,8 @@ public:
     }
 
     /// Calls move(ids[i], boxes[i]) for each i, in order. `parallelFor` does not change the result, even if an id
-    /// occurs twice: in that case, the call runs on one thread. `parallelFor` needs about 10 bytes of scratch memory
-    /// per proxy, and may throw std::bad_alloc after some moves. If so, repeat the call.
+    /// occurs twice: in that case, the call runs on one thread. With `parallelFor`, the call needs about 10 bytes of
+    /// scratch memory per proxy. If it throws std::bad_alloc, only some proxies may have moved: repeat the call.
     /// Asserted: both spans have the same length.
     /// Cost: as move() for each proxy.
     void move(std::span<const ProxyId> ids, std::span<const Box> boxes);
@@ -110,9 +110,9 @@ public:
 
     /// Sets which proxies this proxy may pair with in Pairs. Queries ignore groups. The class Pairs skips pairs that
     /// groups refuse: it does not test, filter or store them. If the grid has Pairs, the proxy counts as changed: the
-    /// next Pairs::update() finds its new pairs. Existing pairs stay until their boxes separate, or until
-    /// Pairs::refilter(). On std::bad_alloc, changes nothing. Cost: O(1). O(proxies) when the grid gets its first
-    /// groups other than ProxyGroups{}.
+    /// next Pairs::update() finds its new pairs. Existing pairs stay, even if the new groups refuse them,
+    /// until their boxes separate, or until Pairs::refilter(). On std::bad_alloc, changes nothing. Cost: O(1), but
+    /// O(proxies) when the grid gets its first groups other than ProxyGroups{}.
     void setGroups(ProxyId id, const ProxyGroups& groups);
 
     /// Returns the proxy's groups.
@@ -129,19 +129,20 @@ public:
     void clear();
 
     /// Moves the origin to `shift` [m]: subtracts `shift` from every box of the grid and its Sweeps. Shift your
-    /// regions, zones and terrains yourself. Returns the number of rounded boxes, except boxes so large that the
-    /// shift is lost in rounding. Rounded boxes count as moved: some may begin to touch, but overlapping boxes never
-    /// separate. Other proxies keep their pairs, and stay at rest unless they tremble. Multiples of a power of two,
-    /// such as 1024 m, round fewest boxes. On std::bad_alloc, changes nothing.
+    /// regions, zones and terrains yourself. Returns the number of boxes that had to be rounded, not counting boxes
+    /// so large that the shift is lost in rounding. Rounded boxes count as moved: some may begin to touch, but
+    /// overlapping boxes never separate. All other proxies keep their pairs; if they are resting and do not tremble,
+    /// they stay resting. Multiples of a large power of two, such as 1024 m, round fewest boxes. On std::bad_alloc,
+    /// changes nothing.
     /// Asserted: the shift is finite. If not, the call does nothing.
-    /// Cost: up to three passes over all boxes. If cells change, plus an update(), now or in the next query or
-    /// update().
+    /// Cost: up to three passes over all boxes. If cells change, plus the cost of an update(), in this call or in the
+    /// next query or update().
     std::size_t shiftOrigin(const Point& shift);
 
     /// True when the id belongs to a proxy of this grid that was not removed.
     [[nodiscard]] bool contains(ProxyId id) const noexcept { return store_.proxies.contains(id); }
 
-    /// Returns the proxy's box, exactly as set or shifted.
+    /// Returns the proxy's box, exactly as add() or move() set it, or as shiftOrigin() shifted it.
     [[nodiscard]] const Box& box(ProxyId id) const;
 
     /// Number of proxies, including proxies with a NaN box.
@@ -153,8 +154,8 @@ public:
         return static_cast<std::uint32_t>(store_.proxies.records.size());
     }
 
-    /// Returns the id of the proxy with this index; a null id if no proxy has it. For indices, as in CollectBits.
-    /// Cost: O(1).
+    /// Returns the id of the proxy with this index; a null id if no proxy has it. It converts the bits of
+    /// CollectBits to ids. Cost: O(1).
     [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept {
         return index < indexLimit() && store_.proxies.isAlive(index) ? store_.proxies.idOf(index)
                                                                      : ProxyId{};
@@ -168,7 +169,7 @@ public:
     [[nodiscard]] std::size_t nanCount() const noexcept { return store_.proxies.nanCount; }
 
     /// Calls visit(ProxyId, const Box&) for every proxy, in ascending index order. visit() may change the grid. Cost:
-    /// O(n) for n proxies. After a peak of 8 n proxies: O(n log n), and a temporary list.
+    /// O(n) for n proxies. If indexLimit() exceeds 8 n, after a peak: O(n log n), and a temporary list.
     template <class Visit>
     void forEach(Visit&& visit) const;
 
@@ -176,10 +177,10 @@ public:
 
     /// Offers every proxy whose box is in `region` to `collector`, once each (regions.hpp, collectors.hpp). Returns
     /// counts of the work.
-    /// Cost: grows with the cells that the region touches, up to about one test per proxy (16 if many rows of cells
-    /// share a bucket). Plus one test for each proxy that changed since the last sort into cells; a region with a NaN
-    /// tests only these (a NaN in a ray's fatness: all proxies). If hundreds of proxies share a cell, regions with
-    /// bounds() test only long boxes, and boxes near the region along one axis.
+    /// Cost: grows with the cells that the region touches, up to about one test per proxy (16 tests if many rows of
+    /// cells share a bucket). Plus one test for each proxy that changed since the last sort into cells. A region with
+    /// a NaN tests only these changed proxies; a ray with a NaN in its fatness tests all proxies. In a cell with
+    /// hundreds of proxies, regions with bounds() test only long boxes, and boxes near the region along one axis.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
@@ -196,8 +197,8 @@ public:
     [[nodiscard]] Scalar cellSize() const noexcept { return store_.tables.cellSize; }
 
     /// Sorts changed proxies into cells if that costs less than `count` queries that read the list of changes. Call
-    /// it before many single queries on threads, for equal costs in every run. visitEach() calls it itself. Cost:
-    /// O(1), or as update().
+    /// it before many single queries on several threads, to make their costs equal in every run. visitEach() calls
+    /// it itself. Cost: O(1), or as update().
     void expectQueries(std::size_t count) const { store_.expectQueries(count); }
 
     /// Like expectQueries(), for rays. Also builds the box trees that make rays fast, if `count` rays are worth it.
@@ -208,8 +209,8 @@ public:
     template <class Collector>
     QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
 
-    /// Returns the cell that contains a point [m]: on each axis, floor(point / cellSize()), limited to -9e18 and
-    /// 9e18. The outermost cells contain all points beyond. Asserted: the point is finite.
+    /// Returns the cell that contains a point [m]: on each axis, floor(point / cellSize()), limited to the range
+    /// from -9e18 to 9e18. The outermost cells contain all points beyond. Asserted: the point is finite.
     [[nodiscard]] std::array<std::int64_t, 3> cellAt(const Point& point) const;
 
     /// Returns the cells that the proxy's box touches. Asserted: the box is finite. Cost: O(1).
@@ -218,7 +219,8 @@ public:
     // --- Frame -----------------------------------------------------------------------------------
 
     /// Ends a frame: sorts the mobile proxies into cells again, except in grids with few proxies. Proxies that have
-    /// not changed for long come to rest. Returns counts of the work, independent of `parallelFor`.
+    /// not changed for GridConfig::updatesBeforeRest updates can become resting: later updates skip them. Returns
+    /// counts of the work, which do not depend on `parallelFor`.
     /// Asserted: the grid has no Pairs (use Pairs::update()); this thread runs no query. If not, the call does
     /// nothing.
     /// Cost: O(1) if nothing changed. Otherwise grows with the mobile proxies; at worst O(n log n), if very many of n
@@ -239,10 +241,10 @@ public:
     void releaseRayMemory() noexcept;
 
     /// Frees unused and reserved capacity, and scratch memory that later calls allocate again. Drops unused indices
-    /// at the end: indexLimit() falls, and old ids stay invalid. Afterwards, new proxies take the lowest free index.
-    /// A proxy with a high index keeps all records below that index allocated. Asserted: this thread runs no query.
-    /// If the capacity exceeds eight times the number of proxies (or the reserved number) during 256 updates in a
-    /// row, update() frees unused memory too, except reserved capacity.
+    /// above the highest used index: indexLimit() falls, and old ids stay invalid. Afterwards, new proxies take the
+    /// lowest free index. A proxy with a high index keeps all records below that index allocated. Asserted: this
+    /// thread runs no query. If the capacity exceeds eight times the number of proxies, and eight times the
+    /// reserved number, during 256 updates in a row, update() frees unused memory too, except reserved capacity.
     /// Cost: O(indexLimit()), plus a copy of the remaining data.
     void releaseUnusedMemory() noexcept;
 

@@ -11,20 +11,20 @@ namespace hashphase {
 /// Settings of a grid. The defaults suit any scene. Change a setting only after measuring its effect, or to repeat a
 /// measurement.
 struct GridConfig {
-    /// Edge [m] of the finest cells. 0: the grid chooses cell sizes from the proxies' sizes, and chooses again when
-    /// proxies change. Valid: 0, or 1e-30 to 1e30.
+    /// Edge [m] of the finest cells. If 0, the grid chooses cell sizes from the proxies' sizes, and chooses again
+    /// when proxies change. Valid: 0, or 1e-30 to 1e30.
     double cellSize = 0;
 
     /// Factor from each cell size to the next coarser size. Used only if cellSize is not 0. Valid: 2 to 64.
     double levelRatio = 4;
 
-    /// After this many updates without a change, a proxy can come to rest. Updates skip resting proxies. Valid: 1 to
-    /// 1,000,000.
+    /// After this many updates without a change, a proxy can become resting. Updates skip resting proxies. Valid: 1
+    /// to 1,000,000.
     std::uint32_t updatesBeforeRest = 8;
 
     /// How far [m] a trembling or slow proxy may move before the grid sorts it into a cell again. Slack makes such
-    /// proxies cheaper; results stay exact. Empty: the grid derives the slack from each proxy's motion. 0: no slack.
-    /// Valid: 0 to 1e30.
+    /// proxies cheaper; results stay exact. If empty, the grid derives the slack from each proxy's motion. 0 means no
+    /// slack. Valid: 0 to 1e30.
     std::optional<double> slack{};
 
     friend bool operator==(const GridConfig&, const GridConfig&) = default;

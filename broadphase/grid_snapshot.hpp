@@ -14,8 +14,9 @@
 // Memory    about as many bytes as the grid; the snapshot keeps its memory for the next save(). On std::bad_alloc,
 //           restore() changes nothing, and save() leaves the snapshot empty.
 // Threads   During a call, no other thread may use the grid or this object.
-// Misuse    Asserted: this thread runs no query; if the grid has Pairs, you pass them. restore() needs a saved state,
-//           an equal GridConfig, and Sweeps if and only if Sweeps were saved. If not, a call does nothing.
+// Misuse    Asserted: this thread runs no query; if the grid has Pairs, you pass the Pairs. restore() needs a saved
+//           state, an equal GridConfig, and Sweeps if and only if Sweeps were saved. If a condition is broken,
+//           the call does nothing.
 // Cost      O(data of the grid, its Pairs and Sweeps)
 
 #include <broadphase/export.hpp>

@@ -29,9 +29,9 @@ struct Move {
     Aabb<Scalar> box;
 };
 
-/// True when no proxy appears twice: the results of indexOf(i) for all i < count differ, except kNoProxyIndex. False
-/// if count > indexLimit. All other results must be below `indexLimit`. May call indexOf() from several threads at
-/// once. Cost: two passes over the moves.
+/// True when no proxy appears twice: the results of indexOf(i) for all i < count differ, except kNoProxyIndex.
+/// Results other than kNoProxyIndex must be below `indexLimit`. False if count > indexLimit. May call indexOf() from
+/// several threads at once. Cost: two passes over the moves.
 template <class IndexOf>
 [[nodiscard]] bool areDistinct(MoveScratch& scratch, std::size_t count, std::size_t indexLimit,
                                ParallelFor parallelFor, const IndexOf& indexOf) {
@@ -68,15 +68,16 @@ class MoveBatch {
 public:
     explicit MoveBatch(Store<Scalar>& store) : store_(store), scratch_(store.scratchOfMoves()) {}
 
-    /// Calls prepare(i) once for each i < count. If prepare(i) returns true, calls moveOf(i), perhaps twice, and
-    /// applies that move. Both functions run on any thread. No proxy may appear twice. If `parallelFor` throws, some
-    /// proxies are moved.
+    /// Calls prepare(i) once for each i < count. If prepare(i) returns true, calls moveOf(i) once or twice, and
+    /// applies that move once. Both functions may run on any thread. No proxy may appear twice. If `parallelFor`
+    /// throws, some of the moves may be missing.
     template <class Prepare, class MoveOf>
     void run(std::size_t count, ParallelFor parallelFor, const Prepare& prepare,
              const MoveOf& moveOf) {
         constexpr std::size_t kGrain = MoveScratch::kGrain;
         std::size_t first = 0;
-        // Moves proxies one by one while Tables::fresh is in use. The first change makes it the mobile table.
+        // Moves proxies one by one while Tables::fresh is in use. The first change makes Tables::fresh the mobile
+        // table.
         for (; first < count && store_.tables.isFresh.load(std::memory_order_relaxed); ++first) {
             if (prepare(first)) {
                 moveInTurn(moveOf(first));

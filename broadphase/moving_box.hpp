@@ -8,8 +8,8 @@
 //
 // Time      from 0 (boxes as given) to 1 (moved by the whole displacement), both inclusive
 // Closed    Sharing a face, an edge or a corner for a moment counts as touching.
-// Exact     Whether boxes touch has no rounding error: always in single precision; in double precision from 1e-140 to
-//           1e300 m. The time is rounded to double precision.
+// Exact     The decision whether boxes touch has no rounding error: always in single precision; in double precision
+//           for magnitudes from 1e-140 to 1e300 m. The time is rounded to double precision.
 // Units     metres
 // Bad data  A box with a NaN, or with a NaN or infinite displacement, touches nothing.
 // Threads   values and pure functions; use them from any thread
@@ -48,7 +48,7 @@ template <class Scalar>
 
 namespace detail {
 
-/// The slower part of firstContact(), which is exact even if rounding could change the result.
+/// The slower part of firstContact(). It is exact even if rounding could change the result.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::optional<double> firstContactExactly(
     const MovingBox<Scalar>& a, const MovingBox<Scalar>& b) noexcept;
@@ -103,8 +103,8 @@ template <class Scalar>
     return begin < end ? std::optional(begin) : std::nullopt;
 }
 
-/// Finds every box that a moving box touches along its path. The boxes of the grid count as not moving. Key: the time
-/// that firstContact() returns. CollectClosest finds the box that is hit first:
+/// Finds every box that a moving box touches along its path. The boxes of the grid count as not moving. The key is
+/// the time that firstContact() returns. CollectClosest finds the box that is hit first:
 ///
 ///     CollectClosest<float> hit;
 ///     grid.visit(MovingBoxRegion<float>({box, displacement}), hit);  // touches at time hit.key()

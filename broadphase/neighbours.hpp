@@ -48,7 +48,7 @@ private:
     detail::Table<Scalar> table_;
     detail::PairParts parts_;
     detail::PairList candidates_;
-    std::vector<ProxyPair> found_;  // the result; never shrinks
+    std::vector<ProxyPair> found_;  // starts with the result; shrinks only in releaseMemory()
     QueryCost cost_;
     detail::PeakWatch peaks_;
 };

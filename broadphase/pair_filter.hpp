@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Filters that decide which overlapping proxies make a pair, and the changes of pairs.
+// Filters that decide which overlapping proxies make a pair. Also PairChanges and PairCost, the results of an update.
 //
 //     const auto areEnemies = [&](ProxyId a, ProxyId b) { return team[a.index] != team[b.index]; };
 //     for (const ProxyPair& pair : pairs.update(areEnemies).born) { ... }
@@ -75,7 +75,7 @@ private:
 /// update(). Lists of other functions are valid until the next call that returns PairChanges.
 struct PairChanges {
     std::span<const ProxyPair> born;  ///< new pairs
-    std::span<const ProxyPair> died;  ///< ended pairs, also with removed proxies
+    std::span<const ProxyPair> died;  ///< ended pairs, including pairs of removed proxies
 };
 
 /// The cost of an update.

@@ -15,9 +15,10 @@
 // Failure  Calls can throw std::bad_alloc, and exceptions of the filter. If update() throws, the next update()
 //          reports all changes since the last update() that returned. Any other call that throws changes nothing.
 // Memory   grows with proxies and pairs. Pairs remembers refused candidates, up to 32 per proxy plus four per pair.
-//          If more are refused, it remembers the pairs instead, and update() tests all overlaps of changed proxies.
+//          If more are refused, it remembers the pairs instead. In that case, update() searches again for all
+//          overlaps of changed proxies.
 // Late     You may create Pairs for a grid that has proxies, and replace Pairs between two updates.
-// Misuse   Asserted: a grid has at most one Pairs; the filter calls only const functions.
+// Misuse   Asserted: a grid has at most one Pairs; the filter calls only const functions of the grid and Pairs.
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>
@@ -38,9 +39,9 @@ class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Sweeps;
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Pairs {
 public:
-    /// Keeps references to the grid, which must outlive this object, and to `sweeps`, until setSweeps(). The first
-    /// update() reports all pairs as born. Wakes all resting proxies. Asserted: `sweeps` belong to this grid, which
-    /// has no other Pairs. Cost: O(proxies).
+    /// Keeps a reference to the grid, which must outlive this object. Uses `sweeps` until setSweeps() replaces them.
+    /// The first update() reports all pairs as born. Wakes all resting proxies. Asserted: `sweeps` belong to this
+    /// grid, which has no other Pairs. Cost: O(proxies).
     explicit Pairs(Grid<Scalar>& grid, Sweeps<Scalar>* sweeps = nullptr);
     Pairs(const Pairs&) = delete;
     Pairs& operator=(const Pairs&) = delete;
@@ -56,9 +57,9 @@ public:
     /// If over 256 proxies share a cell (or hash bucket), update() sorts them along one axis. It searches paths of
     /// sweeping proxies in parts or as rays. For pairs of sweeping proxies, it cuts the frame into up to 64 time
     /// slices.
-    /// Cost: grows with the changed proxies, and with the pairs of recently changed proxies. At worst (inverted
-    /// boxes, or boxes that overlap most others on each axis but touch few): a few tests for each combination of two
-    /// proxies in a cell.
+    /// Cost: grows with the changed proxies, and with the pairs of recently changed proxies. At worst, a few tests
+    /// for each combination of two proxies in a cell. The worst cases are inverted boxes, and boxes that overlap most
+    /// other boxes on each single axis, but touch few of them.
     PairChanges update(PairFilter filter = acceptAllPairs, ParallelFor parallelFor = serialFor) &;
 
     /// Finds pairs of this proxy that began to overlap since the last update. Returns them as born; update() does not
@@ -82,12 +83,13 @@ public:
 
     /// Asks the filter again about each proxy that overlaps this proxy now, or touched it along a path at the last
     /// update. Returns born and died pairs. As in findPairsNow(), died pairs may have removed proxies. Asserted: the
-    /// proxy is alive. Cost: as a few box queries; the first call after many changes: at most as update().
+    /// proxy is alive. Cost: as a few box queries. The first call after many changes costs at most as much as
+    /// update().
     PairChanges refilter(ProxyId id, PairFilter filter) &;
 
     /// refilter() for many proxies, in one pass. Asks about each candidate once, in ascending order. `ids` may
-    /// contain duplicates. Cost: as refilter() for each proxy; at most as finding all pairs from scratch, plus a box
-    /// query per changed proxy.
+    /// contain duplicates. Cost: as refilter() for each proxy, but at most the cost of finding all pairs from scratch
+    /// and making one box query per changed proxy.
     PairChanges refilter(std::span<const ProxyId> ids, PairFilter filter) &;
 
     /// Asks the filter again about these pairs only. Skips elements that are not a pair. Cost: O(pairs).
@@ -98,14 +100,14 @@ public:
     PairChanges refilterAll(PairFilter filter) &;
 
     /// Excludes the pair, without asking the filter, until stopIgnoring() or until either proxy is removed. If the
-    /// pair exists, returns it as died, perhaps with other died pairs as in findPairsNow(). The ids may be in any
+    /// pair exists, returns it as died. May also return other died pairs: see findPairsNow(). The ids may be in any
     /// order. Asserted: the two proxies differ and are alive. Cost: O(1) amortised.
     PairChanges ignore(const ProxyPair& pair) &;
     /// ignore() for each pair. Skips pairs with a proxy that is not alive. Cost: O(pairs) amortised.
     PairChanges ignore(std::span<const ProxyPair> pairs) &;
 
-    /// Ends ignore(). Asks the filter at once if the groups allow the pair, and the two proxies overlap or touched
-    /// along a path at the last update. Returns an accepted pair as born. May also return died pairs: see
+    /// Ends ignore(). If the groups allow the pair, and the two proxies overlap now or touched along a path at the
+    /// last update, asks the filter at once. Returns an accepted pair as born. May also return died pairs: see
     /// findPairsNow(). Skips pairs that are not ignored. Cost: O(1) per pair.
     PairChanges stopIgnoring(const ProxyPair& pair, PairFilter filter) &;
     PairChanges stopIgnoring(std::span<const ProxyPair> pairs, PairFilter filter) &;
@@ -113,22 +115,22 @@ public:
     /// True when the pair is ignored and both proxies are alive. The ids may be in any order. Cost: O(1).
     [[nodiscard]] bool isIgnored(const ProxyPair& pair) const noexcept;
 
-    /// True when some pairs are ignored, perhaps only pairs of removed proxies. Cost: O(1).
+    /// True when at least one pair is ignored. Pairs of removed proxies may count too. Cost: O(1).
     [[nodiscard]] bool mayIgnore() const noexcept;
 
     /// Appends all ignored pairs, sorted, to `pairs`. Cost: O(n log n) for n ignored pairs.
     void collectIgnored(std::vector<ProxyPair>& pairs) const;
 
-    /// Calls Grid::clear(), and forgets all pairs, ignored pairs and sweeps. Reports no died pairs. Asserted: this
-    /// thread runs no query or filter. Cost: O(Grid::indexLimit()).
+    /// Calls Grid::clear(), forgets all pairs and ignored pairs, and ends the sweep of every proxy. Keeps the Sweeps
+    /// object. Reports no died pairs. Asserted: this thread runs no query or filter. Cost: O(Grid::indexLimit()).
     void clear();
 
     /// Appends all pairs of the last update, sorted, to `pairs`. Asserted: the grid has not changed since. Cost: as
     /// finding all pairs from scratch.
     void collect(std::vector<ProxyPair>& pairs) const;
 
-    /// True when the two proxies are a pair, as of the last update and later calls. False if either proxy is not
-    /// alive. Cost: O(1).
+    /// True when the two proxies are a pair after the last call that returned PairChanges. Later moves do not count.
+    /// False if either proxy is not alive. Cost: O(1).
     [[nodiscard]] bool isPair(const ProxyPair& pair) const noexcept;
 
     /// True only if update() would find nothing, because nothing has changed since the last update. Always false
@@ -142,8 +144,8 @@ public:
     /// pairs that groups refuse.
     [[nodiscard]] std::size_t refusedCount() const noexcept { return state_.known.refusedCount(); }
 
-    /// True while Pairs remembers pairs instead of refused candidates (see Memory). May last 256 updates longer than
-    /// needed.
+    /// True while Pairs remembers pairs instead of refused candidates (see Memory). May stay true for up to
+    /// 256 updates with changed proxies after the refused candidates are few again.
     [[nodiscard]] bool remembersPairs() const noexcept { return state_.known.arePairs(); }
 
     /// Returns what the last update() cost.

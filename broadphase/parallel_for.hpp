@@ -13,7 +13,8 @@ namespace hashphase {
 using LoopBody = FunctionRef<void(std::size_t begin, std::size_t end)>;
 
 /// Runs iterations 0 to count - 1, and returns when all are done. Calls body(begin, end) in any order, on any
-/// threads. Each iteration is in exactly one range. A range has about `grain` iterations or more (0 means 1).
+/// threads. Each iteration is in exactly one range. A range has about `grain` iterations or more. A
+/// `grain` of 0 means 1.
 ///
 /// Write your own loop for any task system, or use bulletFor (bullet_parallel_for.hpp) or tbbFor
 /// (tbb_parallel_for.hpp). All give the same results. For speed, cut equal counts into equal ranges, and run each

@@ -42,9 +42,9 @@ template <class Scalar>
     return position;
 }
 
-/// Every proxy whose position is within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the
-/// centre; it may round to 0 or infinity. If the distance itself overflows, only an infinite radius finds the proxy.
-/// The region is empty if the radius is negative or NaN, or the centre is not finite.
+/// Every proxy whose position is within `radius` [m] of `center` (closed ball). The key is the squared distance
+/// [m^2] from the centre. The square may round to 0 or infinity. If the distance itself overflows, only an infinite
+/// radius finds the proxy. The region is empty if the radius is negative or NaN, or the centre is not finite.
 template <class Scalar>
 class PositionRegion {
 public:
@@ -61,7 +61,7 @@ public:
         return keyAt(positionOf(box));
     }
 
-    /// Returns key() of a box with this position [m]; -1 for a NaN.
+    /// Returns key() of a box with this position [m]; -1 if a coordinate is NaN.
     [[nodiscard]] Scalar keyAt(const Vector3<Scalar>& position) const noexcept {
         return detail::squareWithin(position[0] - center_[0], position[1] - center_[1],
                                     position[2] - center_[2], radius_, scale_);

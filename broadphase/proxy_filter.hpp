@@ -24,7 +24,7 @@ using ProxyFilter = FunctionRef<bool(ProxyId)>;
     return true;
 }
 
-/// Passes only proxies that a filter accepts to another collector:
+/// Passes to another collector only the proxies that a filter accepts:
 ///
 ///     CollectIf enemies(all, [&](ProxyId id) { ... });
 ///     grid.visit(region, enemies);
@@ -43,7 +43,7 @@ public:
             collector_.add(id, key);
         }
     }
-    /// The limit of the other collector, so accepted proxies shrink the search.
+    /// Returns the limit of the other collector: only accepted proxies can shrink the search.
     [[nodiscard]] auto limit() const { return collector_.limit(); }
 
 private:

@@ -38,7 +38,8 @@
 
 namespace hashphase {
 
-/// Finds neighbours. Keeps its memory: a frame like the frame before allocates only for additional threads.
+/// Finds neighbours. Keeps its memory: a frame that needs no more memory than before allocates only for additional
+/// threads.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT RadiusSearch {
 public:
@@ -157,8 +158,8 @@ private:
     std::vector<std::uint32_t> cellStart_;  // first agent of each cell; at the end, size()
     std::vector<std::uint32_t> places_;     // place of each agent, sorted by cell
     std::vector<ProxyId> ids_;
-    std::array<std::vector<Scalar>, 3> columns_;  // positions of agents, and kColumnPadding more
-    std::vector<std::uint32_t> numbers_;          // 0, 1, 2 ...; never shrinks
+    std::array<std::vector<Scalar>, 3> columns_;  // positions of agents, then padding
+    std::vector<std::uint32_t> numbers_;          // 0, 1, 2 ...; shrinks only in releaseMemory()
     std::vector<std::uint8_t> groups_;
     detail::RadiusView<Scalar> view_{};
 

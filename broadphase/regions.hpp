@@ -11,11 +11,11 @@
 //
 // key() decides the result. bounds() only saves work: the box may be too large, but never too small. A constant
 // kIsItsBounds in the class promises that every box that overlaps bounds() has the key 0. A region along a line has
-// segment() instead of bounds(): a RayRegion whose key is at most the region's key, for every box in the region. A
-// convex region has volume() instead of bounds().
+// segment() instead of bounds(). segment() returns a RayRegion, whose key must be at most the region's key for every
+// box in the region. A convex region has volume() instead of bounds().
 //
-// Others   PositionRegion (positions, not boxes), CellsRegion (an estimate), MovingBoxRegion (first contact of a
-//          moving box), ConvexRegion (frusta), and any class of yours with these members
+// Others   PositionRegion (positions, not boxes), CellsRegion (estimates the proxies in a ball), MovingBoxRegion
+//          (first contact of a moving box), ConvexRegion (frusta), and any class of yours with these members
 // Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
 // NaN      A region with a NaN is empty: queries find no box.
 // Threads  values; use them from any thread
@@ -32,7 +32,7 @@
 
 namespace hashphase {
 
-/// Every box that overlaps the closed `box`, as overlaps() decides, also for infinite and inverted boxes. All keys
+/// Every box that overlaps the closed `box`. overlaps() decides this, also for infinite and inverted boxes. All keys
 /// are 0.
 template <class Scalar>
 struct BoxRegion {
@@ -47,9 +47,9 @@ struct BoxRegion {
     [[nodiscard]] const Aabb<Scalar>& bounds() const noexcept { return box; }
 };
 
-/// Every box within `radius` [m] of `center` (closed ball). Key: squared distance [m^2] from the centre to the box, 0
-/// if the centre is inside the box. If the radius is negative, the region is empty. If the radius is infinite, the
-/// region contains every box.
+/// Every box within `radius` [m] of `center` (closed ball). The key is the squared distance [m^2] from the centre to
+/// the box, 0 if the centre is inside the box. If the radius is negative, the region is empty. If the radius is
+/// infinite, the region contains every box.
 template <class Scalar>
 class SphereRegion {
 public:
@@ -95,8 +95,8 @@ private:
     Scalar scale_;
 };
 
-/// Every box that a ray hits. The ray is a segment, or a box that moves along the segment (a "fat" ray). Key: the
-/// fraction of the segment at which the ray enters the box, 0 if the ray begins inside.
+/// Every box that a ray hits. The ray is a segment, or a box that moves along the segment (a "fat" ray). The key
+/// is the fraction of the segment at which the ray enters the box, 0 if the ray begins inside.
 ///
 /// Touching a face, an edge or a corner is a hit. If rounding leaves doubt, the ray hits. The length may be 0. If an
 /// end or the length is infinite, the region is empty.
@@ -180,7 +180,7 @@ public:
     /// The `fatness` given to the constructor [m], thicker by at most a rounding error.
     [[nodiscard]] const Aabb<Scalar>& fatness() const noexcept { return fatness_; }
 
-    /// Returns this ray: grids search regions with segment() along the ray, in cells or in a tree of boxes.
+    /// Returns this ray. If a region has segment(), grids search along that ray, in cells or in a tree of boxes.
     [[nodiscard]] const RayRegion& segment() const noexcept { return *this; }
 
 private:

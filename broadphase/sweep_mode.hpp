@@ -11,7 +11,7 @@ namespace hashphase {
 enum class Sweep : std::uint8_t {
     none,       ///< no search: the proxy does not sweep
     box,        ///< search the box around the path: for short paths, and paths along an axis
-    line,       ///< search along the path: for long paths, as of bullets
+    line,       ///< search along the path: for long paths, for example of bullets
     automatic,  ///< `line` if the path is long along two or three axes, else `box`
 };
 

@@ -71,10 +71,10 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return sweeping_.motions.size(); }
 
     /// Like Grid::visit(), but finds sweeping proxies along their paths. Tests the box around the path, or boxes
-    /// around up to 64 parts of the path. Finds every proxy that passes through the region, and perhaps near misses.
-    /// Key: the smallest key of these boxes. With a PositionRegion or Containment::inside, a sweeping proxy is
-    /// certain to be found only if its box at the start of the path is in the region. Cost: as Grid::visit(), plus
-    /// the parts of each path.
+    /// around up to 64 parts of the path. The key is the smallest key of these boxes. Finds every proxy that passes
+    /// through the region. May also find proxies that pass near it. With a PositionRegion or Containment::inside, a
+    /// sweeping proxy is certain to be found only if its box at the start of the path is in the region. Cost: as
+    /// Grid::visit(), plus a test for each part of each path.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
@@ -83,8 +83,9 @@ public:
     /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Frees unused capacity, also for indices that the grid has dropped, and scratch memory that the next update
-    /// allocates again. Asserted: this thread runs no query. Cost: O(dropped indices), plus a copy of the rest.
+    /// Frees unused capacity, including memory for indices that the grid has dropped. Also frees scratch memory that
+    /// the next update allocates again. Asserted: this thread runs no query. Cost: O(dropped indices), plus a copy of
+    /// the remaining data.
     void releaseUnusedMemory() noexcept;
 
     /// Invariant: each motion is stored at the index of its proxy, and no other index has a motion. Returns a

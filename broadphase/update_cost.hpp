@@ -9,7 +9,7 @@ namespace hashphase {
 struct UpdateCost {
     /// Proxies that sweep, or were added, moved, regrouped (setGroups()) or removed since the last update.
     std::uint32_t changed = 0;
-    std::uint64_t filed = 0;    ///< sorted into cells, also by queries since the last update
+    std::uint64_t filed = 0;    ///< proxies sorted into cells, also by queries before the update
     std::uint32_t resting = 0;  ///< proxies at rest after the update
     /// Number of proxies in the fullest cell. If this is a large part of all proxies, they lie on top of each other,
     /// or GridConfig::cellSize is much too large. Results stay exact, but take longer.

@@ -22,9 +22,9 @@ namespace hashphase {
 /// Finds the `count` proxies nearest to `point` [m] that the filter accepts, at most `maximalDistance` [m] away (may
 /// be infinite). Replaces `nearest`, sorted from near to far. Keys are squared distances [m^2]; equal keys are sorted
 /// by id. Never finds `self`, usually the proxy that makes the query. May call the filter several times for a proxy.
-/// Returns the cost. Cost: queries of balls. Each query doubles the radius. If proxies are evenly spread, a few balls
-/// suffice, and the last has some multiple of `count` proxies. At most three passes over the grid, and one query for
-/// each doubling.
+/// Returns the cost. Cost: queries of balls. Each query doubles the radius of the previous query. If proxies are
+/// evenly spread, a few queries suffice, and the last ball contains several times `count` proxies. Worst case: three
+/// passes over the grid, plus a fixed cost for each query.
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost findNearest(const Grid<Scalar>& grid,
                                           const Vector3<std::type_identity_t<Scalar>>& point,

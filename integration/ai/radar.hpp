@@ -22,8 +22,8 @@
 
 namespace hashphase {
 
-/// The part of space that a radar scans. Columns are along the first axis that is not up, rows along the second: x
-/// and z if y is up.
+/// The part of space that a radar scans. Without a heading, column indices grow along the first axis that is not up,
+/// and row indices along the second such axis: along x and z if y is up.
 template <class Scalar>
 struct RadarWindow {
     Vector3<Scalar> center = Vector3<Scalar>::Zero();  ///< [m]
@@ -34,9 +34,9 @@ struct RadarWindow {
     UpAxis up = UpAxis::y;
 
     /// If `heading` is unset, cell borders are at multiples of the cell size. Counts of resting proxies do not change
-    /// while the centre moves within a cell, or if the origin shifts by a multiple of the cell size. The first column
-    /// is columns / 2 cells (rounded down) before the cell that contains the centre. The same rule holds for rows and
-    /// layers.
+    /// while the centre moves within a cell, or if you shift the grid's origin and the centre together by a multiple
+    /// of the cell size. The first column is columns / 2 cells (rounded down) before the cell that contains the
+    /// centre. The same rule holds for rows and layers.
     ///
     /// A heading [rad] turns the window about the up axis, and the middle of the window is exactly at `center`. In
     /// coordinates (column axis, row axis), row indices grow along (sin, cos) of the heading, column indices along

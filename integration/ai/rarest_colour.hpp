@@ -27,9 +27,9 @@ class HASHPHASE_AI_TEMPLATE_EXPORT RarestColour {
 public:
     /// Agents are the proxies that `filter` accepts. Gives every agent the colour, from 0 to colourCount - 1, that
     /// the fewest other agents within `radius` [m] have. If colours are equally rare, takes the lowest. `colours` is
-    /// indexed by ProxyId::index. Calls `changes` once for each agent. Refused agents keep their colours, but
-    /// neighbours count them. Returns the cost of counting. Asserted: colourCount is 1 to RadiusSearch::kMostGroups,
-    /// and each agent has an element in `colours`. Cost: as RadiusSearch::countGroups().
+    /// indexed by ProxyId::index. Calls `changes` once for each agent. Agents that `changes` refuses keep their
+    /// colours, but neighbours count them. Returns the cost of counting. Asserted: colourCount is 1 to
+    /// RadiusSearch::kMostGroups, and each agent has an element in `colours`. Cost: as RadiusSearch::countGroups().
     QueryCost update(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
                      ProxyFilter changes = acceptAll, ParallelFor parallelFor = serialFor);

@@ -8,7 +8,8 @@
 //           SpatialHashBroadphase::closestRay().
 // Blockers  A filter chooses blockers. The viewer, the target, and boxes that contain the eye (such as a house) never
 //           block.
-// Closed    The cone includes its surface. A line that only touches a box meets the box. Rounding may change both.
+// Closed    The cone includes its surface. A line that only touches a box meets the box. In both cases, rounding may
+//           change the result.
 // Threads   For all functions, the thread rules of grid queries hold (grid.hpp). Sight::look() calls the filters on
 //           all threads of `parallelFor`. During look(), no other thread may use the Sight object.
 // Bad data  A viewer sees nothing if its range or half angle is negative or NaN, its eye is not finite, or its
@@ -40,8 +41,8 @@ struct Viewer {
     ProxyId self{};  ///< the viewer's own proxy, if it has one
 };
 
-/// A query region: finds every proxy whose position is in the viewer's cone, even behind blockers. Key: squared
-/// distance [m^2] from the eye. A position at the eye is in every cone.
+/// A query region: finds every proxy whose position is in the viewer's cone, even behind blockers. The key of a found
+/// proxy is its squared distance [m^2] from the eye. A position at the eye is in every cone.
 template <class Scalar>
 class HASHPHASE_AI_TEMPLATE_EXPORT SightRegion {
 public:

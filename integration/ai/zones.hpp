@@ -9,7 +9,7 @@
 // Grid       Zones are not in the grid. Before you pass another grid, call forgetOccupants(). After
 //            Grid::shiftOrigin(), call set() for every zone, with its new position, before the next update().
 //            Otherwise occupants leave.
-// Rollback   A copy is a snapshot, occupants included. To roll back, assign the copy, and call
+// Rollback   A copy of this object is a snapshot, occupants included. To roll back, assign the copy, and call
 //            GridSnapshot::restore(). The next update() repeats the events. Earlier spans are invalid.
 // Threads    Const functions may run on several threads at once. During other calls, no other thread may use this
 //            object. update() is a query of the grid.

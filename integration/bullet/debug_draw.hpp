@@ -7,10 +7,10 @@
 //     hashphase::drawCells(broadphase, *world.getDebugDrawer());
 //
 // Cells     Draws each cell that has proxies. The colour shows the cell's load, the number of proxies in the cell:
-//           from dark blue for one proxy to yellow for eight. If a load is larger, yellow is the largest load. See
-//           filedCells() (filed_cells.hpp).
-// Unfiled   Proxies that are in no cell (unfiled proxies) have red boxes. Every query tests all unfiled proxies;
-//           large numbers make queries slow.
+//           from dark blue for one proxy to yellow for eight. If a cell has more than eight proxies, yellow
+//           means the largest load. See filedCells() (filed_cells.hpp).
+// Unfiled   Proxies that are in no cell (unfiled proxies) have red boxes. Every query tests all unfiled proxies:
+//           large numbers of unfiled proxies make queries slow.
 // When      After stepSimulation(), you see the cells of its last substep. Proxies that you moved afterwards are
 //           unfiled until an update or queries sort them into cells.
 // Lines     Each box takes 12 lines. The fullest cells come first, then unfiled proxies, then other proxies. After
@@ -27,8 +27,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// What drawCells() draws.
 struct CellDrawing {
-    /// If true, also draws the grid's boxes of all proxies, including margins and the whole path of a fast body. In
-    /// cells, resting proxies are grey and mobile proxies light blue.
+    /// If true, also draws the grid's boxes of all proxies, including margins and the whole path of a fast body.
+    /// Boxes of proxies in cells are grey for resting proxies, and light blue for mobile proxies.
     bool boxes = false;
 
     /// The maximum number of lines. Each cell or box is drawn completely or not at all. The default allows 5,000

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// A filter for queries by Bullet's groups and masks.
+// A query filter that uses Bullet's groups and masks.
 
 #include <broadphase/proxy_id.hpp>
 #include <integration/bullet/precision.hpp>

@@ -14,12 +14,13 @@
 //           change the cache, and so may the callback of processAllOverlappingPairs(). The filter must not change the
 //           cache.
 // Removal   If your program removes a pair, the next calculateOverlappingPairs() of a SpatialHashBroadphase adds it
-//           again, unless its proxies have separated or the filter refuses it. In canonical order,
-//           removeOverlappingPair() and update() free algorithms only when the whole array is next read, or the pairs
-//           of a proxy are removed or cleaned. Other calls free them at once.
+//           again, unless its proxies have separated or the filter refuses it. In canonical order, the algorithms
+//           of pairs that removeOverlappingPair() and update() remove are freed later: when the whole array is next
+//           read, or when the pairs of any proxy are next removed or cleaned. Other calls free algorithms at once.
 // Memory    Throws std::bad_alloc when memory runs out. In that case, a call for one pair has changed nothing. A call
-//           for many pairs has removed some or all of its pairs, and added none. Removing one proxy's pairs always
-//           works; without memory, it scans all pairs. Bullet's own arrays do not report that memory ran out.
+//           for many pairs may have removed some or all of its pairs. It has added none, or some if it works like
+//           single calls (see update()). Removing one proxy's pairs always works; without memory, it scans all
+//           pairs. Bullet's own arrays do not report that memory ran out.
 // NULL      If the dispatcher is NULL, no algorithms are freed, as in Bullet. Clients may be NULL.
 // Misuse    Asserted: the two proxies of a pair differ, unique ids of live proxies differ and are not negative, and
 //           the filter does not change the cache.
@@ -59,7 +60,7 @@ enum class PairOrder {
     /// When the whole array is read, pairs are sorted ascending by the keys of both proxies. Equal sets of pairs have
     /// an equal order under any broadphase. For programs that set boxes back to an earlier frame; WorldSnapshot does
     /// not need this order. Algorithms are freed in this order too. As a result, all exact broadphases give equal
-    /// manifolds and trajectories. Cost: O(n log n) for n pairs, after a change.
+    /// manifolds and trajectories. Cost: O(n log n) for n pairs, at the first read after pairs changed.
     canonical,
 };
 
@@ -152,9 +153,10 @@ public:
     /// that are missing, and pairs of `born` that are present. In order of arrival, the first added pairs take the
     /// places of the first removed pairs. Further added pairs go to the end; if fewer are added, pairs from the end
     /// fill the gaps. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like single
-    /// calls. Runs on the threads of `parallelFor` for thousands of pairs, with an equal result. Callbacks run on the
-    /// caller's thread. If the number of present pairs plus born.size() exceeds kMostPairs, throws std::length_error
-    /// and changes nothing. Cost: O(1) for each pair; single calls cost three times as much.
+    /// calls. For thousands of pairs, runs on the threads of `parallelFor`. The result does not depend on the number
+    /// of threads. Callbacks run on the caller's thread. If the number of present pairs plus born.size() exceeds
+    /// kMostPairs, throws std::length_error and changes nothing. Cost: O(1) for each pair; single calls cost three
+    /// times as much.
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                 btDispatcher* dispatcher, ParallelFor parallelFor);
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
@@ -162,9 +164,9 @@ public:
 
     // --- The pairs of one proxy ------------------------------------------------------------------
 
-    /// Removes the proxy's pairs one by one, in canonical order or in the order of Bullet's cache. Frees their
-    /// algorithms at once. Cost: proportional to the proxy's pairs, plus amortised O(1) for each pair added since the
-    /// last such call. After a sort or a large update(), all pairs count as added.
+    /// Removes the proxy's pairs one by one: with PairOrder::canonical in canonical order, otherwise in the order of
+    /// Bullet's cache. Frees their algorithms at once. Cost: proportional to the proxy's pairs, plus amortised O(1)
+    /// for each pair added since the last such call. After a sort or a large update(), all pairs count as added.
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
@@ -207,8 +209,8 @@ public:
     /// Returns the array without sorting it. With PairOrder::canonical, it may be unsorted after a change of pairs.
     [[nodiscard]] const btBroadphasePair* getOverlappingPairArrayPtr() const override;
 
-    /// Sorts the array into canonical order once, with either PairOrder. Unlike Bullet's caches, keeps algorithms and
-    /// calls no ghost callback.
+    /// Sorts the array into canonical order now, with either PairOrder, except within processAllOverlappingPairs().
+    /// Unlike Bullet's caches, keeps algorithms and calls no ghost callback.
     void sortOverlappingPairs(btDispatcher* dispatcher) override;
 
     /// Returns false: pairs are removed at once.
@@ -236,15 +238,15 @@ public:
                (b.m_collisionFilterGroup & a.m_collisionFilterMask) != 0;
     }
     /// Returns the filter callback. If none is set but the broadphase may refuse pairs, returns a callback that
-    /// checks groups and masks: if Bullet finds no callback, its casts of fast bodies do not call
-    /// needsBroadphaseCollision().
+    /// checks groups and masks. Reason: Bullet's casts of fast bodies call needsBroadphaseCollision() only if there
+    /// is a callback.
     btOverlapFilterCallback* getOverlapFilterCallback() override;
     /// Sets the filter callback. NULL removes it.
     void setOverlapFilterCallback(btOverlapFilterCallback* callback) override;
     [[nodiscard]] bool hasFilterCallback() const noexcept { return filter_ != nullptr; }
 
-    /// Sets the ghost callback, which is called once for each added and each removed pair. As in Bullet's caches, it
-    /// is not called for existing pairs. NULL removes it.
+    /// Sets the ghost callback, which is called once for each added and each removed pair. As in Bullet's caches,
+    /// this function does not call it for existing pairs. NULL removes it.
     void setInternalGhostPairCallback(btOverlappingPairCallback* callback) override {
         ghosts_ = callback;
     }
@@ -297,10 +299,10 @@ private:
 
     // The sort keys of a pair, and its index in pairs_.
     struct PairSortKey {
-        std::uint64_t keys;  // keys of both proxies, as unsigned numbers of equal order
+        std::uint64_t keys;  // keys of both proxies, as unsigned numbers that sort like the keys
         std::uint64_t uniqueIds;
         std::uint32_t index;
-        std::uint32_t rank = 0;  // index of its first proxy in a batch
+        std::uint32_t rank = 0;  // in a batch of proxies: index of one of the pair's proxies
 
         friend bool operator<(const PairSortKey& a, const PairSortKey& b) noexcept {
             return a.keys != b.keys ? a.keys < b.keys : a.uniqueIds < b.uniqueIds;

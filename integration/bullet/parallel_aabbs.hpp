@@ -11,7 +11,7 @@
 //                                                               &configuration);
 //
 // Threads   Uses SpatialHashConfig::parallelFor of the broadphase. If parallelFor is empty, or the broadphase is of
-//           another class, the world works like World.
+//           another class, the world works like its base class.
 // Shapes    getAabb() of shapes runs on several threads at the same time, even for one shape. Bullet's shapes allow
 //           this.
 // Callbacks All boxes are computed before the first box is set. If a callback of the pair cache moves an object, its
@@ -33,8 +33,8 @@ namespace detail::inline HASHPHASE_BULLET_NAMESPACE {
 /// Computes the boxes of a world's objects, as btCollisionWorld::updateSingleAabb() does.
 class WorldAabbs {
 public:
-    /// As btCollisionWorld::updateAabbs(). If the world has no SpatialHashBroadphase with a parallelFor, returns
-    /// false and does nothing.
+    /// Works like btCollisionWorld::updateAabbs(). If the world has no SpatialHashBroadphase with a parallelFor,
+    /// returns false and does nothing.
     [[nodiscard]] HASHPHASE_BULLET_EXPORT bool update(btCollisionWorld& world);
 
 private:

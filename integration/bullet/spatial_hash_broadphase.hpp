@@ -77,9 +77,9 @@ public:
 
     /// Returns a proxy whose address never changes. m_uniqueId counts 1, 2, 3 ...; unique ids are reused only after
     /// resetPool() or WorldSnapshot::restore(). Ignores `shapeType`. Throws std::length_error beyond 2^28 proxies,
-    /// and after 2^31 - 1 unique ids until resetPool(). Cost: O(1), plus one test for each ghost, or one box query if
-    /// there are more than 1,024 ghosts. For a ghost, or a proxy in SpatialHashConfig::eagerGroups, plus
-    /// Pairs::findPairsNow() and O(1) for each new pair.
+    /// and after 2^31 - 1 unique ids until resetPool(). Cost: O(1), plus one test for each ghost; with more than
+    /// 1,024 ghosts, one box query instead of these tests. Creating a ghost, or a proxy in
+    /// SpatialHashConfig::eagerGroups, also costs Pairs::findPairsNow(), plus O(1) for each new pair.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -90,8 +90,8 @@ public:
 
     /// Sets the proxy's box. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), also reads the
     /// proxy's group and mask, even if the box is unchanged. Cost: O(1), or one comparison if the box is unchanged.
-    /// With SpatialHashConfig::sweep, plus getAabb() of the body's shape. As createProxy() for ghosts, for proxies in
-    /// eagerGroups, and if the new box does not touch the previous box.
+    /// With SpatialHashConfig::sweep, plus getAabb() of the body's shape. The cost is as for createProxy() if the
+    /// proxy is a ghost or in eagerGroups, or if the new box does not touch the previous box.
     void setAabb(btBroadphaseProxy* proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                  btDispatcher* dispatcher) override;
 
@@ -101,9 +101,9 @@ public:
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box (aabbMin, aabbMax), passes
     /// btRayAabb2() with the callback's own fields. Sees every setAabb() at once, before pairs are calculated. Order:
     /// roughly from near to far; do not rely on it. A ray with NaN or infinite ends, or of length 0, finds nothing.
-    /// If the square of a ray's length overflows, Bullet's fields are NaN or zero, as under btDbvtBroadphase. For
-    /// such rays, query grid() with a RayRegion. Cost: proportional to the boxes near the ray; at most one test for
-    /// each proxy.
+    /// If the square of a ray's length overflows, Bullet computes fields of the callback that are NaN or zero: the
+    /// ray may miss objects, as under btDbvtBroadphase. For such rays, query grid() with a RayRegion. Cost:
+    /// proportional to the boxes near the ray; at most one test for each proxy.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
                  const btVector3& aabbMin = btVector3(0, 0, 0),
@@ -127,8 +127,9 @@ public:
     /// between. Finally, adds pairs again that the program removed from a PairCache, unless their proxies separated
     /// or the filter refuses them. A cache not passed as a PairCache gets such pairs back only when the proxies meet
     /// again.
-    /// You may write groups and masks at any time. A newly allowed pair begins after a move or setAabb() of one of
-    /// its proxies. A pair that is no longer allowed lasts until its boxes separate.
+    /// You may write groups and masks at any time. A newly allowed pair begins after the box of one of its proxies
+    /// changes. If groups and masks decide, it also begins after setAabb() of the proxy with the new group or mask,
+    /// even if the box is unchanged. A pair that is no longer allowed lasts until its boxes separate.
     /// Cost: as Pairs::update(), plus the cache's cost for each added or removed pair. Enters BT_PROFILE zones.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
@@ -156,8 +157,9 @@ public:
                        std::span<btBroadphaseProxy*> proxies, btDispatcher* dispatcher);
 
     /// Sets the box of each proxy, in order, with the result of single calls. Runs on the threads of
-    /// SpatialHashConfig::parallelFor, but on the caller's thread with sweeps, with duplicates in `proxies`, and
-    /// after a callback has changed pairs. If memory runs out, only some boxes are set: repeat the call. Cost: as
+    /// SpatialHashConfig::parallelFor. Exceptions: if SpatialHashConfig::sweep is not none, or `proxies` has
+    /// duplicates, all boxes are set on the caller's thread. If setting a box adds pairs at once, the remaining boxes
+    /// are set on the caller's thread. If memory runs out, only some boxes are set: repeat the call. Cost: as
     /// setAabb() for each proxy.
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
@@ -196,19 +198,19 @@ public:
     /// Pairs::refilterAll(), plus the cache's cost for each added or removed pair.
     void refilterAll(btDispatcher* dispatcher);
 
-    /// Grows the proxy's box by `margin` [m] on all sides, also along the path of a sweep. Two proxies are a pair if
-    /// their grown boxes overlap. Queries test the grown box, too. getAabb(), m_aabbMin and m_aabbMax do not include
-    /// the margin. Takes effect at once, as setAabb() with the present box. A new proxy has no margin;
-    /// refreshBroadphaseProxy() makes a new proxy. If only margins overlap, Bullet treats the pair like any other:
-    /// two dynamic bodies fall asleep only at the same time, and the narrow phase runs while one of them is awake.
-    /// Asserted: `margin` is finite and not negative; if it is not, nothing changes. Cost: as setAabb().
+    /// Grows the proxy's box by `margin` [m] on all sides. A sweeping proxy keeps this margin on its whole path.
+    /// Two proxies are a pair if their grown boxes overlap. Queries test the grown box, too. getAabb(), m_aabbMin and
+    /// m_aabbMax do not include the margin. Takes effect at once, as setAabb() with the present box. A new proxy has
+    /// no margin; refreshBroadphaseProxy() makes a new proxy. If only margins overlap, Bullet treats the pair like
+    /// any other: two dynamic bodies fall asleep only at the same time, and the narrow phase runs while one of them
+    /// is awake. Asserted: `margin` is finite and not negative; if it is not, nothing changes. Cost: as setAabb().
     void setMargin(btBroadphaseProxy* proxy, btScalar margin, btDispatcher* dispatcher);
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
 
     /// From now on, the two proxies do not pair, whatever groups, masks and the filter decide (see Pairs::ignore()).
-    /// An existing pair is removed at once. Its algorithm and contacts are freed at once, or with
-    /// PairOrder::canonical when the cache is next read. The proxies are ignored until stopIgnoringPair(), or until
-    /// one of them is destroyed, also by refreshBroadphaseProxy(). Asserted: the proxies differ. Cost: O(1), plus
+    /// An existing pair is removed at once. Its algorithm and contacts are freed at once; with PairOrder::canonical,
+    /// they are freed when the cache is next read. The pair stays ignored until stopIgnoringPair(), or until one of
+    /// the proxies is destroyed, also by refreshBroadphaseProxy(). Asserted: the proxies differ. Cost: O(1), plus
     /// removing a pair from the cache; with deferred removal, a pass over all pairs.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     /// Ends ignorePair(). If the proxies overlap and the filter accepts them, adds their pair at once. Cost: as
@@ -243,8 +245,8 @@ public:
     std::size_t shiftOrigin(const btVector3& shift);
 
     /// grid() is for queries that Bullet does not have. proxyOf(id) returns the proxy with this id; the proxy's
-    /// m_clientObject is the btCollisionObject. For an index, call proxyOf(grid().idAt(index)). Pass idOf() only
-    /// proxies of this class. Asserted: the proxy is alive.
+    /// m_clientObject is the btCollisionObject. For an index, call proxyOf(grid().idAt(index)). idOf() takes
+    /// only proxies of this class. Asserted: the proxy is alive.
     [[nodiscard]] const Grid<btScalar>& grid() const noexcept { return grid_; }
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
     [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);
@@ -265,7 +267,7 @@ public:
     /// destroyed proxies with the highest indices. Do not use pointers to destroyed proxies afterwards: assertions
     /// cannot detect this. calculateOverlappingPairs() frees memory by itself after 256 calls in a row with capacity
     /// for more than eight times the proxies or pairs. Asserted: no callback is running. Cost:
-    /// O(grid().indexLimit()), plus copying the rest.
+    /// O(grid().indexLimit()), plus a copy of the remaining data.
     void releaseUnusedMemory() noexcept;
 
     /// Returns a sentence about a broken invariant of the grid, sweeps, pairs or own PairCache; empty if all hold.
@@ -280,9 +282,9 @@ private:
     struct Proxy : btBroadphaseProxy {
         ProxyId id;
         Client client = Client::unknown;
-        std::uint8_t kind = 0;    // index in groupKinds_ of its groups in the grid
+        std::uint8_t kind = 0;    // index in groupKinds_ of the groups that the grid has for it
         std::uint16_t world = 0;  // index of its world in a WorldsBroadphase
-        btScalar margin = 0;      // the grid's box is larger by this on each side [m]
+        btScalar margin = 0;      // added to each side of its box in the grid [m]
     };
     struct PairLists;
     class Applying;
@@ -381,7 +383,7 @@ private:
     // Implements setMargin(), and setAabb() in the general case.
     void setAnyAabb(Proxy& proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                     btScalar margin, btDispatcher* dispatcher);
-    // Returns whether setting this box adds no pairs at once. See detail/lone_moves.inl.
+    // Returns true if setting this box cannot add pairs at once. See detail/lone_moves.inl.
     [[nodiscard]] bool movesAlone(const Proxy& proxy, const btVector3& aabbMin,
                                   const btVector3& aabbMax, const btDispatcher* dispatcher) const;
     [[nodiscard]] static Aabb<btScalar> grown(const Aabb<btScalar>& box, btScalar margin);
@@ -429,7 +431,7 @@ private:
     detail::CacheWatch watch_{*this};      // watches the cache if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
     detail::GroupKinds groupKinds_;
-    detail::GroupKinds::Set changedKinds_ = 0;  // kinds of proxies changed since the update
+    detail::GroupKinds::Set changedKinds_ = 0;  // kinds of proxies that changed since the update
     std::vector<std::uint64_t> seen_;           // one bit per index: groups read since the update
     std::size_t seenCount_ = 0;
     std::unique_ptr<detail::FlatSet> ghosts_;  // indices of ghosts; null before the first ghost

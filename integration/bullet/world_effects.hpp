@@ -32,14 +32,16 @@
 //           before removing a body. Afterwards, call step(), or beforeStep() and stepSimulation().
 // Settings  When an effect is declared again, apply() restores the former settings of bodies and the world; the
 //           destructor restores all. If your program sets a value while the effect is off, that value is restored
-//           instead, except DISABLE_DEACTIVATION while sleeping is off. Angular velocities are not restored.
+//           instead. Exception: DISABLE_DEACTIVATION that your program sets while sleeping is off is removed.
+//           Angular velocities are not restored.
 // Lifetime  The world, its broadphase, its pair cache and its former overlap filter must outlive the configurator. No
 //           other filter may call the configurator's filter. The configurator changes only objects in the world.
 // Removal   Call release() before you remove or delete an object. Without this call, a removed object keeps the
 //           overridden settings until it is in the world again and apply() or prepare() configures it. If the
 //           configurator is destroyed first, the object keeps them for ever. A new object at a deleted object's
-//           address is mistaken for the deleted object if it has one of these settings.
-// Other     Soft bodies and multibodies solve their own contacts. Only pairs affects them.
+//           address is mistaken for the deleted object if no apply() ran after the deletion and before the new
+//           object was added, or if a setting of the new object equals an overridden setting.
+// Other     Soft bodies and multibodies solve their own contacts. Only the effect pairs affects them.
 // Memory    Used only for objects with overridden settings. After a removal without release(), memory is kept until
 //           an object is at that address again. Throws std::bad_alloc when memory runs out; repeat the call. The next
 //           step that does not throw completes the pairs.
@@ -107,8 +109,8 @@ public:
     WorldConfigurator& operator=(const WorldConfigurator&) = delete;
 
     /// Sets what Bullet computes from the next step on. If this changes how bodies move, all bodies wake. Pairs
-    /// change at once; under a broadphase other than SpatialHashBroadphase, each object gets a new proxy. Cost: one
-    /// pass over all objects, plus one over contacts and pairs if these may change.
+    /// change at once. If pairs may change under a broadphase other than SpatialHashBroadphase, each object gets a
+    /// new proxy. Cost: one pass over all objects, plus one over contacts and pairs if these may change.
     void apply(const WorldEffects& effects);
     [[nodiscard]] const WorldEffects& effects() const noexcept { return effects_; }
 
@@ -119,13 +121,14 @@ public:
     /// Cost: O(1).
     void release(btCollisionObject& object);
 
-    /// Returns the number of bodies that Bullet will sweep in a step of `timeStep` [s]. If fastFrom is set and there
-    /// are none, switches Bullet's sweeps off for this step. A body that becomes fast during the step is swept from
-    /// the next step on. Call it before each step, or never. Cost: one pass over all objects.
+    /// Returns the number of bodies that Bullet will sweep in a step of `timeStep` [s]. If fastFrom is set and the
+    /// number is 0, switches Bullet's sweeps off for this step. A body that becomes fast during the step is swept
+    /// from the next step on. Call this function before each step, or never. Cost: one pass over all objects.
     int beforeStep(btScalar timeStep);
 
     /// Runs a step of `timeStep` [s]. If motion is declared, calls beforeStep() (only if fastFrom is set), then
-    /// stepSimulation(timeStep, 0). If motion is off, only updates pairs and contacts, if pairs are declared.
+    /// stepSimulation(timeStep, 0). If motion is off, only updates pairs and contacts. If pairs is off too,
+    /// does nothing.
     void step(btScalar timeStep);
 
     /// Returns the number of objects with overridden settings, including objects removed without release().

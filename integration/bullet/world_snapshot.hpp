@@ -22,14 +22,14 @@
 //           last step, collision algorithms outside Bullet's default configuration (such as
 //           btGImpactCollisionAlgorithm), dispatchers not derived from btCollisionDispatcher, solvers not derived
 //           from btSequentialImpulseConstraintSolver. The returned sentence describes the fault.
-// RTTI      If Bullet or this library is built without RTTI, all actions are refused. Multibodies are refused only if
-//           the world has their colliders. Pairs of a btPairCachingGhostObject, and the angle counted by a
-//           btHingeAccumulatedAngleConstraint, are not saved.
+// RTTI      If Bullet or this library is built without RTTI, all actions are refused. In such a build, multibodies
+//           are refused only if the world has their colliders. In such a build, pairs of a btPairCachingGhostObject,
+//           and the angle counted by a btHingeAccumulatedAngleConstraint, are not saved.
 // Added     restore() removes objects, joints and characters that were added after save(). It does not delete them.
-// Removed   Pass objects, joints and characters that were removed after save() to restore(), which adds them again.
+// Removed   If objects, joints or characters were removed after save(), pass them to restore(): it adds them again.
 //           If one is missing, restore() returns a fault that names it, and changes nothing. If you have added a
-//           removed object again yourself, pass it only if its shape has changed: it might be another object at the
-//           same address.
+//           removed object again yourself, pass it only if its shape has changed. If you do not pass it in that case,
+//           restore() takes it for another object at the same address, and returns a fault.
 // Ids       m_uniqueId and ProxyId are restored. Later proxies get the same ids as after save().
 // Pointers  A proxy that exists from save() to restore() keeps its address. For other proxies, and after read(),
 //           call getBroadphaseHandle() again. Pointers to pairs, algorithms, manifolds and contact points are

@@ -25,7 +25,8 @@
 // Threads     Any number of threads may query all worlds and single worlds at the same time. During any other call,
 //             no other thread may use the broadphase or one of its worlds.
 // Callbacks, bad data, memory, misuse: as SpatialHashBroadphase. Exception: do not repeat shiftOrigin() after memory
-//             ran out. A call that is forbidden in a callback is forbidden for all worlds (asserted).
+//             ran out. Calls that are forbidden in a callback are forbidden for all worlds, not only for the world
+//             of the callback (asserted).
 
 #include <broadphase/core/peak_watch.hpp>
 #include <broadphase/query_cost.hpp>
@@ -52,7 +53,7 @@ struct WorldsConfig {
 
     /// Required. Returns the number of the object's world, from 0 to worldCount - 1. createProxy() calls this
     /// function for every object, and so do btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy().
-    /// Before these calls, set the value that it reads: the user index of a new object is -1, an invalid number.
+    /// Before these calls, set the value that worldOf reads: the user index of a new object is -1, an invalid number.
     std::function<int(const btCollisionObject& object)> worldOf{};
 
     /// Settings of each world. each.parallelFor updates several worlds at the same time, each on one thread.
@@ -86,9 +87,9 @@ public:
     [[nodiscard]] int worldCount() const noexcept { return static_cast<int>(worlds_.size()); }
 
     /// Returns the world with this number. All its members may be called, and affect only this world: createProxies()
-    /// ignores worldOf, and resetPool() resets no other world. Differences from a separate SpatialHashBroadphase: all
-    /// worlds share unique ids and the pair cache, releaseUnusedMemory() does not affect the cache, and parallelFor
-    /// is not set. Asserted: the number is valid.
+    /// ignores worldOf, and resetPool() resets no other world. Differences from a separate SpatialHashBroadphase: one
+    /// counter of unique ids and one pair cache serve all worlds, releaseUnusedMemory() does not affect the cache,
+    /// and parallelFor is not set. Asserted: the number is valid.
     [[nodiscard]] SpatialHashBroadphase& world(int number);
     [[nodiscard]] const SpatialHashBroadphase& world(int number) const;
 
@@ -153,7 +154,7 @@ public:
     // --- Beyond Bullet, as SpatialHashBroadphase -------------------------------------------------
 
     /// Finds the closest hit in all worlds. Returns the sum of the queries' costs. Cost: O(worlds), plus a query in
-    /// each world, which stops at the nearest hit found before.
+    /// each world. Each of these queries stops at the nearest hit found so far.
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 

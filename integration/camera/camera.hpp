@@ -84,16 +84,16 @@ public:
     /// Returns false if cameraError() is not empty.
     [[nodiscard]] bool isValid() const noexcept { return isValid_; }
 
-    /// Returns the ray through a pixel, inside or outside the viewport, from the near plane to the far plane. A
-    /// perspective ray ends at most `farthest` [m] beyond the near plane, measured along the view direction. An
-    /// orthographic ray always ends on the far plane. The ray is empty (RayRegion::isEmpty()) if nothing is visible
-    /// at the pixel, or `farthest` is not positive.
+    /// Returns the ray through a pixel, from the near plane to the far plane. The pixel may be outside the viewport.
+    /// A perspective ray ends at most `farthest` [m] beyond the near plane, measured along the view direction. An
+    /// orthographic ray always ends on the far plane. The ray is empty (RayRegion::isEmpty()) if the camera is
+    /// invalid, the pixel is NaN, all points under the pixel are behind the camera, or `farthest` is not positive.
     [[nodiscard]] RayRegion<Scalar> rayThrough(const Pixel& pixel,
                                                double farthest = kFarthestView) const;
 
     /// Takes two opposite corners of a rectangle in any order. Returns the part of the rectangle inside the viewport,
-    /// in normalised device coordinates. This part may be a line or a point. The part isEmpty() if the rectangle is
-    /// outside the viewport.
+    /// in normalised device coordinates. This part may be a line or a point. The part is empty (isEmpty()) if the
+    /// rectangle is outside the viewport.
     // A template, like viewProjection(), because the alignment of Eigen types depends on compiler options.
     template <class Rectangle = ScreenRectangle<Scalar>>
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] Rectangle rectangleBetween(const Pixel& a,

@@ -3,7 +3,7 @@
 
 // Finds the proxies that a camera sees: proxies whose boxes touch the frustum, or another convex volume.
 //
-// Exact     The set contains every proxy whose box touches the volume. The set may contain a few other proxies: near
+// Exact     The set contains every proxy whose box touches the volume. The set may also contain other proxies: near
 //           an edge of the volume, within the margin, or from an earlier frame. overdraw() counts these other
 //           proxies.
 // Frame     Call look() once a frame, with the current frustum.

@@ -19,9 +19,10 @@ namespace hashphase {
 
 /// Bytes about an object.
 struct Contribution {
-    ProxyId proxy;                     ///< pack(): a ghost; finish(): an object of this rank
-    std::span<const std::byte> bytes;  ///< at most 65,536
-    std::uint32_t rank = 0;            ///< finish(): the sender; pack() ignores it
+    /// A ghost if passed to pack(), an object of this rank if returned by finish().
+    ProxyId proxy;
+    std::span<const std::byte> bytes;  ///< at most 65,536 bytes
+    std::uint32_t rank = 0;            ///< from finish(): the sender; ignored by pack()
 };
 
 /// Packs and reads the contributions of one rank. Reuses its memory.
@@ -35,8 +36,8 @@ public:
                                  std::span<const Contribution> forGhosts);
 
     /// Returns other ranks' contributions to objects of this rank, sorted by sender. Contributions of one sender keep
-    /// their order. Valid until the next finish(), and only while the parcels exist. Throws RankError. Cost:
-    /// O(contributions).
+    /// their order. Valid until the next finish(), and only while the bytes of `received` exist. Throws RankError.
+    /// Cost: O(contributions).
     template <class Scalar>
     std::span<const Contribution> finish(const RankGrid<Scalar>& grid,
                                          std::span<const Parcel> received);

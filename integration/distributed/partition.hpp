@@ -6,7 +6,7 @@
 // Regions  A tree of axis-aligned planes cuts space into boxes. Regions are half-open: a region includes its min
 //          faces, not its max faces. Every point is in exactly one region. Outer regions are infinite.
 // Pairs    A pair has a point: on each axis, the larger coordinate of the two min corners. The rank whose region
-//          contains the point has both boxes. Only this rank reports the pair, and needs no messages.
+//          contains the point has both boxes. Only this rank reports the pair. Deciding this needs no messages.
 // Exact    Coordinates are compared with cuts, and never rounded.
 // Threads  Any number of threads may call const members at the same time.
 // Source   Recursive bisection after M. Berger and S. Bokhari, "A partitioning strategy for nonuniform problems on
@@ -45,8 +45,8 @@ struct WeightedPoint {
     double weight = 0;   ///< work in any unit, 0 or more
 };
 
-/// Returns the box around both corners of `box`, which may be inverted. The result contains the pairPoint() of each
-/// pair of `box`.
+/// Returns the box around both corners of `box`. `box` may be inverted. The result contains the pairPoint() of each
+/// pair in which `box` is one of the two boxes.
 template <class Scalar>
 [[nodiscard]] Aabb<Scalar> hullOf(const Aabb<Scalar>& box) noexcept {
     return {box.min().cwiseMin(box.max()), box.min().cwiseMax(box.max())};
@@ -106,8 +106,8 @@ public:
         }
     }
 
-    /// Calls visit(rank) in ascending order for each rank whose space, as a closed box, touches a query region such
-    /// as RayRegion: region.key(space) >= 0. Cost: as forEachRank().
+    /// Calls visit(rank) in ascending order for each rank whose part of space touches `region`, a query region such
+    /// as RayRegion: region.key(part) >= 0. Here, the part includes its max faces. Cost: as forEachRank().
     template <class Region, class Visit>
     void forEachRankWithKey(const Region& region, const Visit& visit) const {
         const auto sides = [&](const Aabb<Scalar>& box, const Cut<Scalar>& cut) {

@@ -30,7 +30,8 @@ struct Question {
     enum class Shape : std::uint8_t { box, sphere, ray };
 
     Shape shape = Shape::box;
-    Aabb<Scalar> extent;  ///< the box; for a ray: the box that moves along it, relative to the point [m]
+    /// The box. For a ray: the box that moves along the ray, relative to the moving point [m].
+    Aabb<Scalar> extent;
     Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< start of a ray, centre of a sphere [m]
     Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< end of a ray [m]
     Scalar radius = 0;                               ///< of a sphere [m]
@@ -73,7 +74,7 @@ struct Question {
 template <class Scalar>
 struct FoundObject {
     Scalar key =
-        0;  ///< box: 0; sphere: squared distance [m^2]; ray: fraction of the ray, 0 at its start
+        0;  ///< always 0 for a box; squared distance [m^2] for a sphere; fraction (0 at the start) for a ray
     GlobalId object;
     std::uint32_t home = 0;  ///< the rank that owns the object
 

@@ -12,8 +12,8 @@
 //            (bytes of your program) moves with the object.
 // Ghosts     If an object's box touches another rank's region, that rank has a ghost: box, groups and payload. pack()
 //            sends only changes.
-// Pairs      All ranks together report the births and deaths of one large grid, each once. If a pair moves to another
-//            rank, no rank reports a birth or death.
+// Pairs      All ranks together report the same births and deaths as one large grid. Exactly one rank reports each of
+//            them. If a pair moves to another rank, no rank reports a birth or death.
 // Frame      Changes are visible on this rank at once, and on other ranks after finish(). To query other ranks, use
 //            questions.hpp before the next change.
 // Result     Deterministic: equal calls give equal results. finish() sorts parcels by sender.
@@ -66,14 +66,14 @@ struct RankGridConfig {
 
 /// Bytes from one rank to another. Valid until the next pack().
 struct Parcel {
-    std::uint32_t rank = 0;  ///< to send: the receiver; received: the sender
+    std::uint32_t rank = 0;  ///< the receiver of a parcel to send; the sender of a received parcel
     std::span<const std::byte> bytes;
 };
 
 /// An object that has moved from one rank to another.
 struct Migration {
     GlobalId object;
-    ProxyId proxy;           ///< on this rank; if departed: its ghost, or a stale id
+    ProxyId proxy;           ///< id on this rank; if departed: id of the ghost, or a stale id
     std::uint32_t rank = 0;  ///< if arrived: its old home; if departed: its new home
 };
 
@@ -82,7 +82,7 @@ struct RankChanges {
     /// Births and deaths that this rank reports, as local ProxyIds, sorted. globalPair() also accepts removed
     /// proxies.
     PairChanges pairs;
-    /// Objects that arrived, sorted by old home. Objects from one home keep the order of its `departed`.
+    /// Objects that arrived, sorted by old home. Objects from one home are in the order of `departed` there.
     std::span<const Migration> arrived;
     std::span<const Migration> departed;
 };
@@ -111,10 +111,10 @@ public:
 
     // --- Objects ---------------------------------------------------------------------------------
 
-    /// Adds an object on this rank, wherever its box is. The next finish() moves the object to its home. Its payload
-    /// is zeros. `groups` are as in Grid::setGroups(), and cannot change later. Throws std::invalid_argument if this
-    /// rank has an object or ghost with this id. If two objects with equal ids meet on a rank later, finish() throws
-    /// RankError. Throws std::length_error beyond 2^28 proxies. Cost: O(1) amortised.
+    /// Adds an object on this rank, wherever its box is. The next finish() moves the object to its home. All bytes
+    /// of the new payload are 0. `groups` are as in Grid::setGroups(), and cannot change later. Throws
+    /// std::invalid_argument if this rank has an object or ghost with this id. If two objects with equal ids meet on
+    /// a rank later, finish() throws RankError. Throws std::length_error beyond 2^28 proxies. Cost: O(1) amortised.
     ProxyId add(GlobalId object, const Box& box, const ProxyGroups& groups = {});
 
     /// Sets the box of an object that this rank owns. Cost: O(1).
@@ -187,7 +187,7 @@ public:
     void setPartition(const Partition<Scalar>& partition);
 
     /// Ends the changes of this frame. Returns the parcels for other ranks, sorted by receiver. Cost: O(n) for n
-    /// added, removed, or (at the region's border) changed objects.
+    /// objects that were added, removed, or changed at the region's border.
     std::span<const Parcel> pack();
 
     /// Ends the frame. Pass all parcels from other ranks for this frame, in any order. Throws RankError. Cost: as
@@ -219,7 +219,7 @@ public:
     /// Appends the pairs that this rank owns, as GlobalIds, sorted. Cost and assertion: as forEachPair().
     void collect(std::vector<GlobalPair>& pairs) const;
 
-    /// Returns the sum of the pairs that this rank owns. Cost and assertion: as forEachPair().
+    /// Returns the checksum of the pairs that this rank owns. Cost and assertion: as forEachPair().
     [[nodiscard]] PairSum pairSum() const;
 
     [[nodiscard]] const RankCost& lastCost() const noexcept { return cost_; }

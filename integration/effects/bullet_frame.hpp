@@ -8,13 +8,13 @@
 //     configurator.step(timeStep);                           // or world.stepSimulation()
 //
 //     effect       setting in Bullet                      lost without the effect
-//     motion       none: step() moves bodies              motion: step() only finds pairs, if declared. After
-//                                                         you move bodies, call updateAabbs(). stepSimulation()
-//                                                         would move bodies that have a velocity
+//     motion       none: step() moves bodies              motion: step() only finds pairs, if pairs is declared.
+//                                                         After you move bodies, call updateAabbs().
+//                                                         stepSimulation() would move bodies that have a velocity
 //     terrain      none: the ground is your static body   the ground: do not add its body
 //                  (static_triangles.hpp)
 //     pairs        the world's overlap filter             contacts, ghosts' lists, response and sweep
-//     response     each object's answer to contacts       bodies pass through each other; contacts are reported
+//     response     CF_NO_CONTACT_RESPONSE of objects      bodies pass through each other; contacts are reported
 //     sweep        m_useContinuous; CCD thresholds of     bodies that move by more than half their width in a step
 //                  bodies that are fast for their size    may pass through thin bodies
 //     sleeping     deactivation, linear thresholds        nothing, but Bullet also computes resting bodies

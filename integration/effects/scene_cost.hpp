@@ -7,7 +7,7 @@
 //     const SceneCost& cost = simulation.advance(1.0F / 60);
 //     std::uint64_t born = cost[SceneCounter::pairsBorn];
 //
-// Threads  Values: each thread may use its own copies.
+// Threads  These types are values: each thread may use its own copies.
 
 #include <integration/effects/effect.hpp>
 #include <integration/effects/export.hpp>
@@ -59,8 +59,8 @@ enum class SceneCounter : std::uint8_t {
     cullingBoxesTested,  ///< boxes tested against the view
     framesCulledLate,    ///< 1 if restingCameraFrames skipped the search, so the set is old
     // Proximity.
-    agentsScanned,     ///< agents that searched, and their possible neighbours
-    neighboursTested,  ///< distances between agents tested
+    agentsScanned,     ///< agents that searched and, if turns is 1, their possible neighbours
+    neighboursTested,  ///< tested distances between agents
     agentsLate,        ///< agents that did not search: far, or not their turn
     // Zones.
     zonesTested,      ///< zones searched

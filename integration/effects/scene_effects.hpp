@@ -53,11 +53,12 @@ struct ResponseEffect {
     double restitution = 1;  ///< from 0 (no bounce) to 1 (no loss)
 };
 
-/// Fast bodies hit bodies on their paths. If response is declared, they bounce off the first body. A body is fast if
-/// it moves by `fastFrom` diameters or more in a frame. Needs pairs and motion.
+/// Finds each pair of a fast body and a body on its path. If response is declared, a fast body bounces off the first
+/// body on its path. A body is fast if it moves by `fastFrom` diameters or more in a frame. Needs pairs and motion.
 struct SweepEffect {
     Sweep mode = Sweep::automatic;  ///< not Sweep::none
-    /// Diameters per frame, 0 or more. If above 0.5, slower bodies may pass through bodies thinner than themselves.
+    /// Diameters per frame, 0 or more. If fastFrom is above 0.5, bodies that are not fast may pass through bodies
+    /// thinner than themselves.
     double fastFrom = 0.5;
 };
 
@@ -65,8 +66,8 @@ struct SweepEffect {
 struct SleepingEffect {
     /// Bodies farther than this from the interest sleep [m].
     double interestRadius = std::numeric_limits<double>::infinity();
-    double slowBelow = 0;                  ///< slower bodies sleep after some frames [m/s]
-    std::uint32_t framesBeforeSleep = 30;  ///< number of frames below slowBelow
+    double slowBelow = 0;                  ///< slower bodies sleep after framesBeforeSleep [m/s]
+    std::uint32_t framesBeforeSleep = 30;  ///< number of consecutive frames below slowBelow
 };
 
 /// Bodies rotate (only in Bullet). If undeclared, bodies keep their orientation. Needs motion.
@@ -99,7 +100,8 @@ struct ProximityEffect {
         std::numeric_limits<double>::infinity();  ///< agents farther from the interest are far [m]
     std::uint32_t farFrames = 1;                  ///< far agents search only in every n-th frame
     /// Number n of turns: in each frame, one n-th of the agents search. If n is 1, neighbours change colour at the
-    /// same time, perhaps to and fro in every frame. Far agents search in every farFrames-th turn.
+    /// same time, and may alternate between colours in every frame. If n is above 1, a far agent searches only in
+    /// every farFrames-th of its turns.
     std::uint32_t turns = 1;
 };
 

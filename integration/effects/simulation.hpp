@@ -12,8 +12,8 @@
 //             throws UndeclaredEffect. Rotation and friction run only in Bullet.
 // Exact       Only motion, terrain, response, sweep and sleeping decide the positions of bodies. Positions are equal
 //             to the last bit for any number of threads, and for any other declared effects.
-// Bodies      A body takes part in its own effects, if they are declared. If it takes no part in motion, it stands
-//             still, and other bodies bounce off it. If it takes no part in response, it is a sensor.
+// Bodies      A body takes part in those effects of Body::effects that are declared. If it takes no part in motion,
+//             it stands still, and other bodies bounce off it. If it takes no part in response, it is a sensor.
 // Threads     Const members may run on several threads at once. During other calls, no other thread may use the
 //             simulation.
 // Failure     If memory runs out in advance(), some bodies may have moved. The next frame works, and reports all

@@ -18,7 +18,7 @@ public:
     /// `call` names the called function, such as "colours()".
     UndeclaredEffect(Effect effect, std::string_view call);
 
-    /// For a call that needs one of the effects in `oneOf` (not empty). effect() returns the first.
+    /// For a call that needs one of the effects in `oneOf` (not empty). effect() returns the first of these effects.
     UndeclaredEffect(EffectSet oneOf, std::string_view call);
 
     /// The effect to declare.

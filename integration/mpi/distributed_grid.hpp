@@ -41,17 +41,17 @@ namespace hashphase {
 struct DistributedConfig {
     RankGridConfig rankGrid;
 
-    /// update() cuts space again if the largest load of a rank exceeds this factor times the mean load. A factor
-    /// below the error of a cut counts as this error: 1.04 up to 128 ranks, 1.13 for 1,024, 1.5 for 16,384. Valid: 1
-    /// or more. If infinite, only the first frame and balanceNow() cut space.
+    /// update() cuts space again if the largest load of a rank exceeds this factor times the mean load. Because cuts
+    /// have errors, the factor used is at least 1.04 up to 128 ranks, 1.13 for 1,024 ranks, and 1.5 for 16,384 ranks.
+    /// Valid: 1 or more. If infinite, only the first frame and balanceNow() cut space.
     double rebalanceAbove = 1.1;
 
-    /// Longest time to wait for another rank [s]. 0: waits for ever. Choose more time than any rank needs between two
-    /// updates.
+    /// Longest time to wait for another rank [s]. If 0, calls wait without limit. Choose more time than any rank
+    /// needs between two updates.
     double patience = 600;
 };
 
-/// Cost of the last frame on this rank, and the balance of all ranks. ask() does not count.
+/// Cost of the last frame on this rank, and the balance of all ranks. Includes only update(), or begin() and end().
 struct DistributedCost {
     RankCost rankGrid;
     /// Largest load of a rank, divided by the mean load of all ranks, in the frame before the last frame.
@@ -73,8 +73,8 @@ public:
     /// all ranks if configurations differ, and std::invalid_argument if the configuration is invalid.
     explicit DistributedGrid(MPI_Comm communicator, const DistributedConfig& config = {});
     /// Begins with a partition, such as from an earlier run. All ranks must pass equal partitions. Objects that you
-    /// add on their home rank need no transfer. Also throws RankError if partitions differ, or have another number of
-    /// ranks.
+    /// add on their home rank need no transfer. Also throws RankError if partitions differ, or have more or
+    /// fewer ranks than the communicator.
     DistributedGrid(MPI_Comm communicator, const Partition<Scalar>& partition,
                     const DistributedConfig& config = {});
     DistributedGrid(const DistributedGrid&) = delete;
@@ -112,7 +112,8 @@ public:
     /// loads are compared. Asserted: the load is not negative.
     void setLoad(std::optional<double> load);
 
-    /// Cuts space again at the beginning of the frame after the next, even if work is balanced. Call it on any rank.
+    /// Cuts space again at the beginning of the frame after the next, even if work is balanced. A call on one rank is
+    /// enough.
     void balanceNow() noexcept { wantsCut_ = true; }
 
     // --- The whole -------------------------------------------------------------------------------
@@ -127,8 +128,8 @@ public:
     /// each with a barrier.
     Answers<Scalar> ask(std::span<const Question<Scalar>> questions);
 
-    /// Returns the sum of the pairs of all ranks: the same sum on each rank. Call it after update(), before the next
-    /// change. Cost: as Pairs::collect(), plus one MPI reduction.
+    /// Returns the checksum of the pairs of all ranks. Each rank gets the same checksum. Call it after update(),
+    /// before the next change. Cost: as Pairs::collect(), plus one MPI reduction.
     PairSum pairSum();
 
     [[nodiscard]] const DistributedCost& lastCost() const noexcept { return cost_; }

@@ -6,7 +6,7 @@
 // Units     metres
 // Bad data  Results are empty if the ray is empty, a height is NaN, or `low` is above `high`.
 // Source    In 2D grids, the paper picks at the point at which the ray meets the ground. This misses tall objects in
-//           front of the point. clipToHeights() keeps the ray between the heights.
+//           front of the point. Instead, query with clipToHeights(): the part of the ray between the heights.
 
 #include <broadphase/regions.hpp>
 #include <integration/camera/camera.hpp>
@@ -19,8 +19,8 @@
 namespace hashphase {
 
 /// Returns the part of a ray between the heights. Except for rounding, this part meets every box between the heights
-/// that the whole ray meets. Fractions of the result count from its own start. Returns an empty ray if no part is
-/// between the heights.
+/// that the whole ray meets. Results such as Picked::fraction are fractions of the ray with which you query. Returns
+/// an empty ray if no part is between the heights.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT RayRegion<Scalar> clipToHeights(
     const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights);

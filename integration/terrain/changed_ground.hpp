@@ -4,8 +4,8 @@
 // Finds where the ground of a terrain has changed, and the proxies that may stand there. Wake them, or let them fall.
 //
 // Frame    Change the terrain, update the grids, call findStanding() for each grid with bodies, then call clear().
-//          Until clear(), each findStanding() searches these places again. If you do not update a grid first, results
-//          are equal, but findStanding() may cost as much as an update.
+//          Each findStanding() searches all places that have changed since clear(). If you do not update a grid
+//          first, findStanding() finds the same proxies, but may cost as much as an update.
 // Boxes    This object keeps the boxes of added and removed triangles, and the old and new boxes of replaced
 //          triangles. Consecutive boxes whose union is a box are joined. Terrain::shiftOrigin() shifts the boxes.
 // Memory   Allocated once, by the constructor. If the memory is full, every pair of consecutive boxes becomes one box
@@ -44,9 +44,10 @@ public:
     /// Boxes in which the ground has changed since clear(), in the order of changes.
     [[nodiscard]] std::span<const Box> boxes() const noexcept { return boxes_; }
 
-    /// Finds the proxies of any grid whose boxes touch one of boxes(), grown by `reach` [m] on all sides. Never finds
-    /// the terrain's triangles. Replaces `standing`: each proxy once, sorted by id. Calls `filter` once for each
-    /// found proxy. Returns the cost. Cost: Grid::visit() for each of boxes(), and sorting the result.
+    /// Grows each of boxes() by `reach` [m] on all sides, and finds the proxies of `grid` whose boxes touch a grown
+    /// box. `grid` may be any grid. Never finds the terrain's triangles. Replaces `standing`: each proxy once, sorted
+    /// by id. Calls `filter` once for each found proxy. Returns the cost. Cost: Grid::visit() for each of boxes(),
+    /// and sorting the result.
     QueryCost findStanding(const Grid<Scalar>& grid, std::type_identity_t<Scalar> reach,
                            std::vector<ProxyId>& standing, ProxyFilter filter = acceptAll) const;
 

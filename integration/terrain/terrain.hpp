@@ -6,15 +6,16 @@
 // Frame     Change the ground, then query many points in one call. changed_ground.hpp finds the bodies on changed
 //           ground.
 // Numbers   A triangle keeps its number until it is removed. Later triangles may get this number. add() assigns
-//           consecutive numbers. If all chunks have equal sizes, all free numbers are used again; otherwise, some are
-//           not. Free numbers and refused triangles have NaN corners, a zero normal and the null proxy.
+//           consecutive numbers. If all calls of add() and remove() have equally many triangles, all free numbers are
+//           used again. Otherwise, some may stay free. Free numbers and refused triangles have NaN corners, a zero
+//           normal and the null proxy.
 // Grid      The grid may contain other proxies, which may change. This costs time, but does not change results.
 //           Removed triangles have no effect on results.
 // Exact     A point on an edge or corner belongs to all triangles there, so a closed surface has no holes. Heights
 //           are computed in double precision.
 // Seams     Rounding may leave gaps between meshes with different transforms. A point in such a gap belongs to the
-//           highest triangle within seamTolerance(), or to a triangle exactly below the point if that has about the
-//           same height.
+//           highest triangle within seamTolerance(). If another triangle is exactly below the point, and has about
+//           the same height or is higher, the point belongs to that triangle instead.
 // Units     metres. Heights are coordinates along the up axis.
 // Threads   Several threads may run queries (const functions) at once. During other calls, no other thread may use
 //           the terrain, its grid, or its ChangedGround.
@@ -92,12 +93,13 @@ public:
 
     /// Adds triangles, three corners [m] each, in either orientation. Refuses triangles with a coordinate that is
     /// NaN, infinite or beyond kFarthest. Vertical triangles and triangles of zero area carry spheres, but have no
-    /// height. The triangles get the lowest consecutive free numbers. If too few are free, size() grows. Allocates
-    /// nothing if enough triangles were removed before. Cost: O(triangles) amortised, and O(runs of free numbers).
+    /// height: surfaceBelow() does not find them. The triangles get the lowest consecutive free numbers. If no run of
+    /// free numbers is long enough, size() grows. Allocates nothing if enough triangles were removed before. Cost:
+    /// O(triangles) amortised, and O(runs of free numbers).
     AddedTriangles add(std::span<const Point> corners);
 
-    /// As above, but each triangle has three indices into `vertices`. Also refuses triangles with an index beyond the
-    /// last vertex.
+    /// As the other add(), but each triangle has three indices into `vertices`. Also refuses triangles with an index
+    /// beyond the last vertex.
     AddedTriangles add(std::span<const Point> vertices, std::span<const std::uint32_t> indices);
 
     /// Replaces the corners of the triangles with numbers `first`, `first` + 1 and so on. Refuses triangles as add()
@@ -135,7 +137,7 @@ public:
     /// The triangle's proxy; null for a refused triangle.
     [[nodiscard]] ProxyId proxy(std::uint32_t triangle) const;
 
-    /// Returns the index of the triangle that owns this proxy. Use it for proxies that a query found. Returns
+    /// Returns the number of the triangle that owns this proxy. Use it for proxies that a query found. Returns
     /// std::nullopt if the terrain has no such proxy. Cost: O(1).
     [[nodiscard]] std::optional<std::uint32_t> triangleOf(ProxyId id) const noexcept {
         const std::uint32_t number = numberOf(id);
@@ -154,10 +156,12 @@ public:
 
     /// Returns the tolerance [m] at the point: the tolerance that you set, or the automatic tolerance, by which
     /// rounding may move a nearby edge. The automatic tolerance is 8 epsilon of Scalar times the sum of two lengths.
-    /// The first length is the point's larger coordinate along the ground. The second length is the largest extent
-    /// plus height of all chunks (the triangles of one add() or replace()) that have triangles left, rounded up to a
-    /// power of two, at most 16 km. Shifts of the origin do not lower the tolerance. For chunks of 32 m in single
-    /// precision, the tolerance is 0.05 mm near the origin, and 1 mm at 1 km; in double precision 2 pm at 1 km.
+    /// The first length is the larger absolute value of the point's two coordinates along the ground. The second
+    /// length depends on the chunks (the triangles of one add() or replace()) that have triangles left. The size of a
+    /// chunk is its largest extent plus its largest absolute height. The second length is the size of the largest
+    /// chunk, rounded up to a power of two, at most 16 km. Shifts of the origin do not lower the tolerance. For
+    /// chunks of 32 m in single precision, the tolerance is 0.05 mm near the origin, and 1 mm at 1 km; in double
+    /// precision 2 pm at 1 km.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
         return setTolerance_
                    ? *setTolerance_
@@ -216,7 +220,7 @@ private:
         const auto along = [&](Eigen::Index axis) {
             constexpr auto last = static_cast<Scalar>(kTilesPerSide - 1);
             const Scalar tile = (point[axis] - bounds_.min()[axis]) * tilesPerMetre_[axis];
-            // This order of min and max makes NaN 0.
+            // This order of min and max turns NaN into 0.
             return static_cast<std::uint32_t>(std::min(std::max(Scalar(0), tile), last));
         };
         return static_cast<std::uint16_t>(along(alongZ_) * kTilesPerSide + along(alongX_));
