@@ -5,8 +5,8 @@
 // "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing".
 //
 // Frame     Updates read all colours before they change any, so the order of agents does not matter.
-// Threads   Updates query the grid. During an update, no other thread may use this object. Filters run on all threads
-//           of `parallelFor`.
+// Threads   An update is a query of the grid: the same thread rules hold. During an update, no other thread may use
+//           this object. Filters run on all threads of `parallelFor`.
 // Units     as the grid, usually metres
 // Bad data  Agents without a position (position_region.hpp) keep their colours. If the radius is negative or NaN,
 //           agents have no neighbours. An agent whose colour is colourCount or more is not counted, but gets a new

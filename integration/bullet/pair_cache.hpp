@@ -278,7 +278,7 @@ public:
 
     // --- For a broadphase ------------------------------------------------------------------------
 
-    /// Who removes a pair. The broadphase must know of removals by others.
+    /// Who removes a pair. The cache notifies the broadphase of removals by others.
     enum class Remover { broadphase, other };
 
     /// As removeOverlappingPairsContainingProxies(). Notifies the broadphase if the remover is not the broadphase.

@@ -128,9 +128,10 @@ public:
     /// or the filter refuses them. A cache not passed as a PairCache gets such pairs back only when the proxies meet
     /// again.
     /// You may write groups and masks at any time. A newly allowed pair begins after the box of one of its proxies
-    /// changes. If groups and masks decide, it also begins after setAabb() of the proxy with the new group or mask,
-    /// even if the box is unchanged. A pair that is no longer allowed lasts until its boxes separate.
-    /// Cost: as Pairs::update(), plus the cache's cost for each added or removed pair. Enters BT_PROFILE zones.
+    /// changes. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), setAabb() with the old box is
+    /// enough, for the proxy whose group or mask you changed. A pair that is no longer allowed lasts until its boxes
+    /// separate. Cost: as Pairs::update(), plus the cache's cost for each added or removed pair. Enters BT_PROFILE
+    /// zones.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }

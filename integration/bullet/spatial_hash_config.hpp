@@ -42,10 +42,10 @@ struct SpatialHashConfig {
 
     /// How to find the objects that a fast rigid body passes in a step. By default, bodies do not sweep. If
     /// m_useContinuous is set, Bullet's box of such a body covers start, end and all between. With a sweep, this box
-    /// makes no pairs. Instead, the body pairs exactly with the objects that it touches along the path that Bullet
-    /// predicts. Queries test Bullet's box of the body, extended to the end of the path if m_useContinuous is off. A
-    /// body sweeps until its next setAabb(). If you move a body by hand, set its interpolation transform too. Cost:
-    /// up to two getAabb() calls for each moving body's shape.
+    /// makes no pairs. Instead, the body gets pairs with exactly those objects that it touches along the path that
+    /// Bullet predicts. Queries test Bullet's box of the body, extended to the end of the path if m_useContinuous is
+    /// off. A body sweeps until its next setAabb(). If you move a body by hand, set its interpolation transform too.
+    /// Cost: up to two getAabb() calls for each moving body's shape.
     Sweep sweep = Sweep::none;
 
     /// A body is fast if it moves in a step by more than `fastFrom` times the smallest edge of its box. Other bodies

@@ -30,7 +30,8 @@
 //           If one is missing, restore() returns a fault that names it, and changes nothing. If you have added a
 //           removed object again yourself, pass it only if its shape has changed. If you do not pass it in that case,
 //           restore() takes it for another object at the same address, and returns a fault.
-// Ids       m_uniqueId and ProxyId are restored. Later proxies get the same ids as after save().
+// Ids       m_uniqueId and ProxyId are restored. Proxies added after restore() get the same ids as the proxies that
+//           were added after save().
 // Pointers  A proxy that exists from save() to restore() keeps its address. For other proxies, and after read(),
 //           call getBroadphaseHandle() again. Pointers to pairs, algorithms, manifolds and contact points are
 //           invalid after restore().

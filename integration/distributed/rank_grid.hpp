@@ -225,8 +225,8 @@ public:
     [[nodiscard]] const RankCost& lastCost() const noexcept { return cost_; }
 
     /// Returns min corners of up to `count` objects that this rank owns, for Partition::balanced(). Weights estimate
-    /// the work. Their sum is max(load, 1). By default, `load` is lastCost().load. Cost: O(objects and ghosts), and
-    /// two box queries for each point.
+    /// the work. Their sum is max(load, 1). Without the parameter `load`, uses lastCost().load. Cost: O(objects and
+    /// ghosts), and two box queries for each point.
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count) const;
     [[nodiscard]] std::vector<WeightedPoint<Scalar>> sampleLoad(std::size_t count,
                                                                 double load) const;

@@ -88,7 +88,7 @@ enum class SceneTable : std::uint8_t {
     sweepers,    ///< bodies that sweep in this frame
     rayTrees,    ///< trees over the grid, which only rays read
     visible,     ///< visible set: a bit for each body
-    agents,      ///< positions of agents by cell, counts, and colours
+    agents,      ///< positions of agents, sorted by cell; counts of neighbours; colours
     zones,       ///< zones, their occupants, and events
     radar,       ///< counts by cell and group
     groups,      ///< the radar group of each body

@@ -96,9 +96,9 @@ struct CullingEffect {
 struct ProximityEffect {
     double radius = 10;             ///< [m]
     std::uint32_t colourCount = 4;  ///< 1 to RadiusSearch::kMostGroups
-    double interestRadius =
-        std::numeric_limits<double>::infinity();  ///< agents farther from the interest are far [m]
-    std::uint32_t farFrames = 1;                  ///< far agents search only in every n-th frame
+    /// Agents farther than this from the point of interest are far [m].
+    double interestRadius = std::numeric_limits<double>::infinity();
+    std::uint32_t farFrames = 1;  ///< far agents search only in every n-th frame
     /// Number n of turns: in each frame, one n-th of the agents search. If n is 1, neighbours change colour at the
     /// same time, and may alternate between colours in every frame. If n is above 1, a far agent searches only in
     /// every farFrames-th of its turns.
@@ -107,8 +107,8 @@ struct ProximityEffect {
 
 /// Finds the proxies in zones of interest (ai/zones.hpp).
 struct ZonesEffect {
-    double interestRadius =
-        std::numeric_limits<double>::infinity();  ///< zones farther from the interest are far [m]
+    /// Zones farther than this from the point of interest are far [m].
+    double interestRadius = std::numeric_limits<double>::infinity();
     std::uint32_t farFrames = 1;  ///< far zones are searched only in every n-th frame
 };
 

@@ -32,8 +32,9 @@ struct Picked {
 };
 
 /// Returns the fraction of the ray's length at which the ray meets the object of a proxy. Returns std::nullopt if
-/// there is no hit. The ray must not meet the object before the proxy's box. The test may ignore hits beyond the
-/// fraction `limit`. Called only for proxies that the filter accepts and whose boxes the ray meets.
+/// there is no hit. This fraction must not be less than the fraction at which the ray enters the proxy's box: the
+/// object must lie within its box. The test may ignore hits beyond the fraction `limit`. Called only for proxies that
+/// the filter accepts and whose boxes the ray meets.
 template <class Scalar>
 using ExactTest =
     FunctionRef<std::optional<Scalar>(ProxyId id, const RayRegion<Scalar>& ray, Scalar limit)>;

@@ -131,7 +131,7 @@ public:
     /// The corners [m] of a triangle, in the given order; NaN for a refused triangle.
     [[nodiscard]] Corners corners(std::uint32_t triangle) const;
 
-    /// Unit normal of the upper side; zero if the triangle has no height, or is too thin.
+    /// Unit normal of the upper side; zero if the triangle is vertical or refused, or is too thin.
     [[nodiscard]] Point normal(std::uint32_t triangle) const;
 
     /// The triangle's proxy; null for a refused triangle.

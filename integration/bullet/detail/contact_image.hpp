@@ -107,7 +107,7 @@ private:
 
     // Scratch.
     std::string fault_;
-    std::array<std::vector<const void*>, 3> knownTables_;  // of algorithms of each kind: few
+    std::array<std::vector<const void*>, 3> knownTables_;   // of algorithms of each kind: few
     mutable std::size_t at_ = 0;                            // in owned_
     mutable std::vector<btPersistentManifold*> manifolds_;  // as heads_; null where none was made
 };
