@@ -92,8 +92,9 @@ FROM did WHERE trial IN (SELECT trial FROM showcases) AND ms IS NOT NULL;
 /* {"conclusions": "sizes"} */
 SELECT iif(count(*) = 0, 'No population was timed with automatic and fixed cells.',
            'Automatic cells against the best fixed cells, ' || count(*) || ' populations: '
-           || fixed(100 * median(regret), 0) || ' % more time in the median, '
-           || fixed(100 * max(regret), 0) || ' % at worst (' || name
+           || fixed(100 * abs(median(regret)), 0) || ' % ' || iif(median(regret) < 0, 'less', 'more')
+           || ' time in the median, ' || fixed(100 * abs(max(regret)), 0) || ' % '
+           || iif(max(regret) < 0, 'less', 'more') || ' at worst (' || name
            || '). The goal, at most 15 %, is ' || iif(max(regret) <= 0.15, 'met.', 'missed.'))
 FROM contests WHERE regret IS NOT NULL
 UNION ALL
