@@ -361,7 +361,7 @@ TEST(Benchmarks, RunWhatIsOnRequestOnlyWhenItIsNamed) {
 TEST(Benchmarks, TellWhatDeclaredEffectsTakeOfAFrameByHand) {
     const Outcome outcome = run({"--only", "effects-pairs", "--sizes", "200", "--frames", "45"});
     EXPECT_EQ(outcome.exitCode, demos::kExitOk) << outcome.out;
-    EXPECT_NE(outcome.out.find("Effects: how many times as long"), std::string::npos);
+    EXPECT_NE(outcome.out.find("Effects: the time of a declared frame"), std::string::npos);
     EXPECT_NE(outcome.out.find("\neffects-pairs/200  "), std::string::npos) << outcome.out;
 }
 
