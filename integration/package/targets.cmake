@@ -29,9 +29,9 @@ endif()
 # Unoptimised libraries take 20 times as long. Within a project that sets no level of optimisation they are optimised
 # all the same: in Debug builds with assertions, and if the project sets no build type, as in a Release build.
 get_directory_property(options COMPILE_OPTIONS)
-set(levelOption "(^|[ ;])-O")
+set(levelOption "(^|[ ;:])-O")
 if(MSVC)
-    set(levelOption "(^|[ ;])[-/]O")
+    set(levelOption "(^|[ ;:])[-/]O")
 endif()
 set(HASHPHASE_OPTIMISATION "")
 if("${CMAKE_CXX_FLAGS} ${options}" MATCHES "${levelOption}")
