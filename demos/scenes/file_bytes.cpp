@@ -65,7 +65,7 @@ void requireFile(const std::filesystem::path& path) {
         throw InputError(path.string() + " is a folder, not a file.");
     }
     if (error) {
-        throw InputError(path.string() + " cannot be read" + reasonOf(error.value()) + ".");
+        throw InputError(path.string() + " cannot be read: " + error.message() + ".");
     }
     if (!std::filesystem::is_regular_file(status)) {
         throw InputError(path.string() +

@@ -327,7 +327,8 @@ std::string Run::writeFiles() {
     const auto write = [&faults](std::optional<ResultFile>& file, const std::string& path,
                                  const auto& content) {
         try {
-            if (!std::filesystem::is_fifo(path)) {  // its reader takes a close as the end
+            std::error_code unknown;
+            if (!std::filesystem::is_fifo(path, unknown)) {  // its reader takes a close as the end
                 file.emplace(path);
             }
             file->write(content);
