@@ -19,7 +19,7 @@ class AgreedEnd {
 public:
     /// By all ranks of `communicator` together; `patience` is how long to wait for another rank [s], 0 for ever.
     AgreedEnd(MPI_Comm communicator, double patience)
-        : said_(std::make_shared<Said>(communicator, patience)) {}
+        : said_(std::make_shared<Said>(communicator, patience, "for all ranks to begin")) {}
     AgreedEnd(const AgreedEnd&) = delete;
     AgreedEnd& operator=(const AgreedEnd&) = delete;
     ~AgreedEnd() {

@@ -24,7 +24,7 @@ bool Ranks::isMpiReady() noexcept {
     return isReady != 0 && isOver == 0;
 }
 
-Ranks::Ranks(MPI_Comm communicator, double seconds) : seconds_(seconds) {
+Ranks::Ranks(MPI_Comm communicator, double seconds, const char* doing) : seconds_(seconds) {
     if (!isMpiReady()) {
         throw RankError(
             "DistributedGrid: MPI is not running. Make the grid after MPI_Init() and before "
@@ -45,7 +45,7 @@ Ranks::Ranks(MPI_Comm communicator, double seconds) : seconds_(seconds) {
     MPI_Request duplication = MPI_REQUEST_NULL;
     const auto duplicate = std::make_shared<MPI_Comm>(MPI_COMM_NULL);
     check(MPI_Comm_idup(communicator, duplicate.get(), &duplication), "MPI_Comm_idup");
-    wait(duplication, duplicate, "for all ranks to make the grid");
+    wait(duplication, duplicate, doing);
     communicator_ = *duplicate;
     MPI_Comm_set_errhandler(communicator_, MPI_ERRORS_RETURN);
 }

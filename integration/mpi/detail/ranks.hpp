@@ -21,7 +21,9 @@ namespace hashphase::detail {
 class HASHPHASE_MPI_EXPORT Ranks {
 public:
     /// By all ranks of `communicator` together; `seconds` is how long to wait for another rank, 0 for ever.
-    Ranks(MPI_Comm communicator, double seconds);
+    /// `doing` completes the error "It waited 30 s ...".
+    Ranks(MPI_Comm communicator, double seconds,
+          const char* doing = "for all ranks to make the grid");
     Ranks(const Ranks&) = delete;
     Ranks& operator=(const Ranks&) = delete;
     ~Ranks();
