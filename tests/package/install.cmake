@@ -25,8 +25,7 @@ endfunction()
 # What a user has installed from this folder can be removed after the test, too.
 set(manifest ${BUILD}/install_manifest.txt)
 set(kept ${PREFIX}_manifest.txt)
-file(REMOVE ${kept})
-if(EXISTS ${manifest})
+if(EXISTS ${manifest} AND NOT EXISTS ${kept}) # which a run that failed has left
     file(RENAME ${manifest} ${kept})
 endif()
 

@@ -4,18 +4,22 @@
 # Sourced by fresh_system and first_program, after setup.sh: a fresh system of Debian in a temporary folder. It is
 # removed, with its mounts, when the script ends.
 
-# Those of the script, to start it again.
+# The script's arguments, to start it again.
 arguments=()
+
+# Ends the script unless root runs it.
+require_root() {
+    if [[ $EUID != 0 ]]; then
+        say "makes a system: run it as root"
+        exit 2
+    fi
+}
 
 # make_system <release> [<package>...]: with these packages; sets `system` to its folder. Starts the script again, with
 # its `arguments`, in mounts of its own, which end with it.
 make_system() {
     local release=$1 packages mirror
     packages=$(IFS=, && echo "${*:2}")
-    if [[ $EUID != 0 ]]; then
-        say "makes a system: run it as root"
-        exit 2
-    fi
     # shellcheck disable=SC2016 # apt-get fills it in
     mirror=$(apt-get indextargets --format '$(REPO_URI)' "Codename: $release" "Component: main" | head -n 1)
     if [[ ! $mirror ]]; then
