@@ -151,14 +151,21 @@ const std::string& titleOf(const DataColumn& column) {
     return column.title.empty() ? column.name : column.title;
 }
 
-int digitsOf(const DataColumn& column) {
+namespace {
+
+bool isOfTimes(const DataColumn& column) {
     constexpr std::array<std::string_view, 9> kUnits{
         "[ms]", "[ms ", "[us]", "[ns]", "[ns ", "[ns/", "[s]", "[times ", "times as fast"};
     const std::string& title = titleOf(column);
-    const bool isOfTimes = std::any_of(kUnits.begin(), kUnits.end(), [&](std::string_view unit) {
+    return std::any_of(kUnits.begin(), kUnits.end(), [&](std::string_view unit) {
         return title.find(unit) != std::string::npos;
     });
-    return isOfTimes ? 3 : 4;
+}
+
+}  // namespace
+
+int digitsOf(const DataColumn& column) {
+    return isOfTimes(column) ? 3 : 4;
 }
 
 std::string valueText(const Value& value) {
@@ -181,7 +188,7 @@ std::string valueText(const Value& value) {
 
 std::string cellText(const Value& value, const DataColumn& column) {
     const double* number = std::get_if<double>(&value);
-    if (number == nullptr || !std::isfinite(*number) || *number == 0 || digitsOf(column) > 3) {
+    if (number == nullptr || !std::isfinite(*number) || *number == 0 || !isOfTimes(column)) {
         return valueText(value);
     }
     // The power of ten of the first digit, once rounded: 9.999 is 10.0.

@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kDescription =
     "Measures hashphase next to Bullet's broadphases and the broadphases of other libraries. In "
     "each frame all contestants run one after the other on the same objects, and every answer is "
-    "checked. Prints a table per case, and one for all cases. All cases take half an hour. Above "
+    "checked. Prints a table per case, and one for all cases. All cases take 40 minutes. Above "
     "100,000 objects (--sizes) btDbvtBroadphase takes seconds per frame.";
 
 constexpr int kQuickFrames = 5;

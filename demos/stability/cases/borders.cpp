@@ -138,7 +138,7 @@ constexpr auto multiplesOfTheCell = [](auto& run) {
         }
         ++sizes;
     }
-    run.note(std::to_string(sizes) + " cell sizes, with " + std::to_string(borders) +
+    run.note(std::to_string(sizes) + " cell sizes, with " + std::to_string(borders - 1) +
              " borders in each direction.");
 };
 
