@@ -90,7 +90,10 @@ void Simulation<Scalar>::moveBodies() {
     const std::span<const Scalar> radii = radii_;
     const std::span<const std::uint32_t> movers = motion_->movers;
     BodyFiler<filing> filer(index_.get());
-    const auto move = [&, seconds = seconds_](std::uint32_t body) {
+    const Scalar seconds = seconds_;
+    const bool isInOrder = movers.size() == positions.size();
+    for (std::size_t i = 0; i < movers.size(); ++i) {
+        const std::uint32_t body = isInOrder ? static_cast<std::uint32_t>(i) : movers[i];
         Point& velocity = velocities[body];
         Point position = positions[body] + velocity * seconds;
         if constexpr (isBounded) {
@@ -98,13 +101,6 @@ void Simulation<Scalar>::moveBodies() {
         }
         positions[body] = position;
         filer.file(body, position, radii[body]);
-    };
-    if (movers.size() == positions.size()) {  // all, in order
-        for (std::uint32_t body = 0; body < positions.size(); ++body) {
-            move(body);
-        }
-    } else {
-        std::for_each(movers.begin(), movers.end(), move);
     }
     cost_[SceneCounter::bodiesMoved] += movers.size();
     note(filing, filer.farthest());
