@@ -178,16 +178,18 @@ TEST_F(Wander, EndsWhereACommandHasPausedIt) {
 TEST_F(Wander, SaysWhereAScriptWasStopped) {
     struct Case {
         const char* script;
+        const char* timeLimit;
         int code;
         const char* verdict;
     };
-    for (const auto& [script, code, verdict] :
-         {Case{"step 1000000\nexpect bodies = 5\n", kExitCheckFailed, "stopped at line 1 of 2"},
-          Case{"# a comment\nstep 1000000\n", kExitCheckFailed, "stopped at line 2 of 2"},
-          Case{"step 2\nquit\nexpect bodies = 5\n", kExitOk, "stopped at line 2 of 3"},
-          Case{"step 2\nexpect bodies = 300\n", kExitOk, "all expectations hold"}}) {
-        const Outcome ended =
-            run("--objects 300 --time-limit 0.3 --script " + file("script", script));
+    for (const auto& [script, timeLimit, code, verdict] :
+         {Case{"step 1000000\nexpect bodies = 5\n", "0.3", kExitCheckFailed,
+               "stopped at line 1 of 2"},
+          Case{"# a comment\nstep 1000000\n", "0.3", kExitCheckFailed, "stopped at line 2 of 2"},
+          Case{"step 2\nquit\nexpect bodies = 5\n", "60", kExitOk, "stopped at line 2 of 3"},
+          Case{"step 2\nexpect bodies = 300\n", "60", kExitOk, "all expectations hold"}}) {
+        const Outcome ended = run(std::string("--objects 300 --time-limit ") + timeLimit +
+                                  " --script " + file("script", script));
         EXPECT_EQ(ended.code, code) << script;
         EXPECT_EQ(ended.out, std::string("script: ") + verdict + "\n");
     }
