@@ -3,6 +3,7 @@
 // What colours tell: a body has the colour that the legend says.
 
 #include <demos/viewer/show/picture_maker.hpp>
+#include <tests/viewer/show/play.hpp>
 
 #include <gtest/gtest.h>
 
@@ -17,13 +18,7 @@ namespace {
 struct Coloured {
     explicit Coloured(std::initializer_list<const char*> commands, const char* scene = "wander")
         : session({.name = scene, .file = {}, .objects = 400, .seed = 1}) {
-        session.isPlaying = false;
-        for (const char* command : commands) {
-            session.run(command);
-        }
-        do {
-            session.advance();
-        } while (session.isWaiting());
+        play(session, {commands.begin(), commands.size()});
         colours.prepare(session);
         legends = colours.legends(session);
     }
