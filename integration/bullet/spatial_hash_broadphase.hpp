@@ -128,10 +128,10 @@ public:
     /// or the filter refuses them. A cache not passed as a PairCache gets such pairs back only when the proxies meet
     /// again.
     /// You may write groups and masks at any time. A newly allowed pair begins after the box of one of its proxies
-    /// changes. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), setAabb() with the old box is
-    /// enough, for the proxy whose group or mask you changed. A pair that is no longer allowed lasts until its boxes
-    /// separate. Cost: as Pairs::update(), plus the cache's cost for each added or removed pair. Enters BT_PROFILE
-    /// zones.
+    /// changes. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), the box need not change: call
+    /// setAabb() with the old box for the proxy whose group or mask you changed. A pair that is no longer allowed
+    /// lasts until its boxes separate. Cost: as Pairs::update(), plus the cache's cost for each added or removed
+    /// pair. Enters BT_PROFILE zones.
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }
@@ -175,7 +175,8 @@ public:
     /// As btCollisionWorld::rayTest(), but tests objects from near to far, and stops when no nearer hit is possible.
     /// Reports no hit more than 2 cm beyond callback.m_closestHitFraction. A ClosestRayResultCallback gets an equal
     /// result, but may keep another of several hits at an equal fraction. For soft bodies, use rayTest() of their
-    /// world. Returns the query's cost. Cost: at most rayTest(), plus a cast at the shape of each found proxy.
+    /// world. Returns the query's cost. Cost: at most as this broadphase's rayTest(), plus a cast at the shape of
+    /// each found proxy.
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 

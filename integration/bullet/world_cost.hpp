@@ -10,17 +10,17 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Counts of one step. The word before a colon is an effect (world_effects.hpp). If this effect is off, the count is
-/// exactly 0, unless the program changes settings of a WorldConfigurator by hand.
+/// Counts of one step. If the effect named after a count (world_effects.hpp) is off, this count is exactly 0,
+/// unless the program changes settings of a WorldConfigurator by hand.
 struct WorldCost {
-    int pairCount = 0;             ///< pairs: overlapping pairs
-    int manifoldCount = 0;         ///< pairs: contact manifolds of the narrow phase
-    int contactCount = 0;          ///< pairs: contact points
-    int answeredContactCount = 0;  ///< response: contact points handled by the solver
-    int rubbingContactCount = 0;   ///< friction: handled contact points with friction
-    int sweptCount = 0;            ///< sweep: bodies that Bullet swept
-    int sleepingCount = 0;         ///< sleeping: dynamic bodies that sleep
-    int turningCount = 0;          ///< rotation: dynamic bodies with an angular velocity
+    int pairCount = 0;             ///< overlapping pairs (effect: pairs)
+    int manifoldCount = 0;         ///< contact manifolds of the narrow phase (effect: pairs)
+    int contactCount = 0;          ///< contact points (effect: pairs)
+    int answeredContactCount = 0;  ///< contact points handled by the solver (effect: response)
+    int rubbingContactCount = 0;   ///< handled contact points with friction (effect: friction)
+    int sweptCount = 0;            ///< bodies that Bullet swept (effect: sweep)
+    int sleepingCount = 0;         ///< dynamic bodies that sleep (effect: sleeping)
+    int turningCount = 0;          ///< dynamic bodies with an angular velocity (effect: rotation)
     int awakeCount = 0;            ///< dynamic bodies that are neither asleep nor disabled
 };
 

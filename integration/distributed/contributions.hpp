@@ -25,7 +25,7 @@ struct Contribution {
     std::uint32_t rank = 0;            ///< from finish(): the sender; ignored by pack()
 };
 
-/// Packs and reads the contributions of one rank. Reuses its memory.
+/// Packs the contributions that one rank sends, and reads the contributions that it receives. Reuses its memory.
 class HASHPHASE_DISTRIBUTED_EXPORT Contributions {
 public:
     /// Returns parcels for other ranks, sorted by receiver, valid until the next pack(). A ghost may have several

@@ -91,8 +91,8 @@ void Ranks::idle(const char* doing) {
     const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - since_;
     if (seconds_ > 0 && waited.count() > seconds_) {
         fail("It waited " + std::to_string(static_cast<int>(waited.count())) + " s " + doing +
-             ". Another rank stopped, is slow, or made other calls: see its output, or raise "
-             "DistributedConfig::patience.");
+             ". Another rank stopped, is slow, or made other calls: see its output, or raise the "
+             "patience (DistributedConfig::patience).");
     }
     std::this_thread::yield();
 }

@@ -260,8 +260,8 @@ private:
     [[nodiscard]] Scalar along(const Point& point) const noexcept {
         return std::max(std::abs(point[alongX_]), std::abs(point[alongZ_]));
     }
-    /// Sets the vertical column below the point. The column extends `reach` [m] to each side. Add a margin for
-    /// rounding to `reach`.
+    /// Sets the vertical column below the point. The column extends `reach` [m] to each side. `reach` must include
+    /// a margin for rounding.
     void setColumn(Aabb<Scalar>& column, const Point& point, Scalar reach) const noexcept {
         column.min() = point.array() - reach;
         column.max() = point.array() + reach;
