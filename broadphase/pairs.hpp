@@ -54,9 +54,9 @@ public:
     /// Ends the frame: updates the grid, and returns the pairs that began or ended since the last update. Each change
     /// appears once. The result does not depend on `parallelFor`. The filter runs on the caller's thread. Asserted:
     /// this thread runs no query.
-    /// If over 256 proxies share a cell (or hash bucket), update() sorts them along one axis. It searches paths of
-    /// sweeping proxies in parts or as rays. For pairs of sweeping proxies, it cuts the frame into up to 64 time
-    /// slices.
+    /// If over 256 proxies share a cell (or hash bucket), update() sorts them along one axis. To keep long paths
+    /// cheap, update() searches the path of a sweeping proxy in parts or as a ray. For pairs of sweeping proxies, it
+    /// cuts the frame into up to 64 time slices.
     /// Cost: grows with the changed proxies, and with the pairs of recently changed proxies. At worst, a few tests
     /// for each combination of two proxies in a cell. The worst cases are inverted boxes, and boxes that overlap most
     /// other boxes on each single axis, but touch few of them.

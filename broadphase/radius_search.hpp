@@ -90,8 +90,9 @@ public:
 
     /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent, on the threads of
     /// `parallelFor`. The span is valid until visit() returns. The order of neighbours does not depend on
-    /// `parallelFor`. Returns the cost; its `hits` are neighbours. Asserted: visit() calls only const functions of
-    /// this object. Cost: O(n m) for n agents, with m agents in the cells around each; at most O(n^2).
+    /// `parallelFor`. Returns the cost; `hits` is the number of neighbours of all agents. Asserted: visit() calls only
+    /// const functions of this object. Cost: O(n m) for n agents, with m agents in the cells around each; at most
+    /// O(n^2).
     template <std::invocable<std::uint32_t, std::span<const std::uint32_t>> Visit>
     QueryCost forEach(Visit&& visit, ParallelFor parallelFor = serialFor) {
         using Target = std::remove_reference_t<Visit>;

@@ -18,7 +18,8 @@ public:
     /// `call` names the called function, such as "colours()".
     UndeclaredEffect(Effect effect, std::string_view call);
 
-    /// For a call that needs one of the effects in `oneOf` (not empty). effect() returns the first of these effects.
+    /// For a call that needs one of the effects in `oneOf` (not empty). effect() returns the one that comes first
+    /// in the enum Effect.
     UndeclaredEffect(EffectSet oneOf, std::string_view call);
 
     /// The effect to declare.
