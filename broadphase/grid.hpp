@@ -131,9 +131,9 @@ public:
     /// Moves the origin to `shift` [m]: subtracts `shift` from every box of the grid and its Sweeps. Shift your
     /// regions, zones and terrains yourself. Returns the number of boxes that had to be rounded, not counting boxes
     /// so large that the shift is lost in rounding. Rounded boxes count as moved: some may begin to touch, but
-    /// overlapping boxes never separate. All other proxies keep their pairs. Resting proxies stay resting, except
-    /// proxies that tremble (GridConfig::slack). Multiples of a large power of two, such as 1024 m, round fewest
-    /// boxes. On std::bad_alloc, changes nothing.
+    /// overlapping boxes never separate. All other proxies keep their pairs. If resting, they stay resting, unless
+    /// they tremble (GridConfig::slack). Multiples of a large power of two, such as 1024 m, round fewest boxes. On
+    /// std::bad_alloc, changes nothing.
     /// Asserted: the shift is finite. If not, the call does nothing.
     /// Cost: up to three passes over all boxes. If cells change, plus the cost of an update(), in this call or in the
     /// next query or update().

@@ -10,8 +10,8 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Counts of one step. If the effect named after a count (world_effects.hpp) is off, this count is exactly 0,
-/// unless the program changes settings of a WorldConfigurator by hand.
+/// Counts of one step. If the effect in parentheses (world_effects.hpp) is off, the count is exactly 0, unless the
+/// program changes settings of a WorldConfigurator by hand.
 struct WorldCost {
     int pairCount = 0;             ///< overlapping pairs (effect: pairs)
     int manifoldCount = 0;         ///< contact manifolds of the narrow phase (effect: pairs)

@@ -41,7 +41,8 @@
 //           configurator is destroyed first, the object keeps them for ever. A new object at a deleted object's
 //           address is mistaken for the deleted object if no apply() ran after the deletion and before the new
 //           object was added, or if a setting of the new object equals an overridden setting.
-// Other     Soft bodies and multibodies solve their own contacts. Of all effects, only `pairs` changes them.
+// Other     Soft bodies and multibodies solve their own contacts. Only the effects `pairs` and, in step(), `motion`
+//           change them.
 // Memory    Used only for objects with overridden settings. After a removal without release(), memory is kept until
 //           an object is at that address again. Throws std::bad_alloc when memory runs out; repeat the call. The next
 //           step that does not throw completes the pairs.
