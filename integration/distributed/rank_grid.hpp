@@ -149,7 +149,7 @@ public:
     [[nodiscard]] std::uint32_t homeOf(ProxyId id) const;
 
     /// Returns the GlobalId of an object or ghost. Until the next finish(), also accepts proxies that the last frame
-    /// removed. Any other proxy fails an assertion, and returns id 0.
+    /// removed. Asserted: the proxy is one of these. Without assertions, returns id 0 for other proxies.
     [[nodiscard]] GlobalId globalId(ProxyId id) const;
 
     /// Returns the GlobalIds of a pair.

@@ -2,7 +2,8 @@
 #pragma once
 
 // Counters of the work in a scene's frame, and the bytes of the scene's tables. Each counter and table belongs to one
-// or more effects (the table `bodies` to none), and is exactly 0 if none of these effects is declared.
+// or more effects, and is exactly 0 if none of these effects is declared. Exception: every scene has the table
+// `bodies`.
 //
 //     const SceneCost& cost = simulation.advance(1.0F / 60);
 //     std::uint64_t born = cost[SceneCounter::pairsBorn];
