@@ -32,8 +32,8 @@ namespace hashphase {
 template <class Scalar>
 using Vector3 = Eigen::Matrix<Scalar, 3, 1>;
 
-/// A box from min() to max(), both inclusive. It may be infinite, or inverted (min > max) like Aabb<Scalar>(). The
-/// tests below are exact for such boxes too.
+/// A box from min() to max(), both inclusive. It may be infinite, or inverted (min > max) like Aabb<Scalar>().
+/// overlaps() defines which boxes such boxes overlap.
 template <class Scalar>
 using Aabb = Eigen::AlignedBox<Scalar, 3>;
 
@@ -69,8 +69,8 @@ template <class Scalar>
            detail::areUnordered(low[2], high[2]);
 }
 
-/// True when the closed boxes a and b share a point: a.min <= b.max and b.min <= a.max on every axis. False when any
-/// of the twelve coordinates is NaN.
+/// True when a.min <= b.max and b.min <= a.max on every axis. If neither box is inverted, this means that the closed
+/// boxes share a point. False when any of the twelve coordinates is NaN.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline bool overlaps(const Aabb<Scalar>& a,
                                                             const Aabb<Scalar>& b) noexcept {

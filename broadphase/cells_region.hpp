@@ -11,14 +11,14 @@
 
 namespace hashphase {
 
-/// Finds every proxy whose box touches a cell of a ball: a cell that the ball's bounding box touches. This
-/// approximates the proxies in the ball, without computing distances. The key of every proxy is 0.
+/// Finds every proxy whose box touches a cell that a ball's bounding box touches. This approximates the proxies in
+/// the ball, without computing distances. The key of every proxy is 0.
 ///
 ///     CollectCount count;
 ///     grid.visit(CellsRegion<float>(center, 20, grid.cellSize()), count);
 ///
-/// The result includes all proxies that a PositionRegion or SphereRegion of the ball finds. All other
-/// proxies found, apart from rounding, are at most radius + cellSize from the centre on each axis: at most
+/// The result includes all proxies that a PositionRegion or SphereRegion of the ball finds. Apart from rounding,
+/// every other box found has a point at most radius + cellSize from the centre on each axis: at most
 /// sqrt(3) * (radius + cellSize) away.
 ///
 /// Source: Hastings, Mesit and Guha, "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing", 2005,

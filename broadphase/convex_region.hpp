@@ -22,7 +22,8 @@ enum class Containment : std::uint8_t { touching, inside };
 
 /// Which boxes count as touching. exact: boxes that share a point with the volume. byPlanes: faster, but also finds
 /// a few boxes outside the volume, near its edges. byPlanes rejects a box only if it lies wholly outside one
-/// plane of the volume, or misses the volume in a view along the x axis. Containment::inside ignores Touch.
+/// plane of the volume, or if the projections of box and volume along the x axis do not touch. Containment::inside
+/// ignores Touch.
 enum class Touch : std::uint8_t { exact, byPlanes };
 
 /// Finds every box that touches a convex volume, or that lies wholly inside it (see Containment). The volume is the

@@ -4,9 +4,10 @@
 // Diagnostics: messages about bad data, and assertions about misuse.
 //
 // Threads   The library may call the handlers on any thread. Set your handlers before other threads start.
-// Errors    A message handler must not throw. An assertion handler may throw, to leave the misused function.
-// Messages  The library ignores bad data, such as a box with a NaN. Each object reports its first case to the message
-//           handler, which writes to stderr by default.
+// Errors    A message handler must not throw. An assertion handler may throw, to leave the misused function. If that
+//           function is noexcept or a destructor, throwing ends the program.
+// Messages  The library ignores bad data, such as a box with a NaN. Each Grid and each Sweeps reports its first case
+//           to the message handler, which writes to stderr by default.
 // Misuse    A broken precondition fails an assertion. The default handler writes an explanation and the source line
 //           to stderr, and aborts. Assertions exist if HASHPHASE_ENABLE_ASSERTS is 1: by default in all build types
 //           except Release, MinSizeRel and an empty CMAKE_BUILD_TYPE. CMake's HASHPHASE_ASSERTS=ON or OFF overrides

@@ -11,8 +11,8 @@
 // HASHPHASE_ONE_FOR_ALL                  marks a header's thread_local variable that all libraries of a program share
 // HASHPHASE_SHARES_VARIABLES             1 if libraries can share a thread_local variable; 0 with DLLs, where a
 //                                        function of one library returns the variable
-// HASHPHASE_ASK_LINKER_FOR(x)            MSVC only: linking fails if the grid's library does not define the const
-//                                        char hashphase::x, even if the compiler drops unused references
+// HASHPHASE_ASK_LINKER_FOR(x)            MSVC only: linking fails unless the grid's library defines the const char
+//                                        hashphase::x, even if no code uses x
 
 // Compilers in C++17 mode or older stop here: public headers include this header before their C++20 code.
 #if defined(_MSVC_LANG) ? _MSVC_LANG <= 201703L : __cplusplus <= 201703L

@@ -7,8 +7,9 @@
 //     for (const FiledCell<float>& cell : filedCells(grid).cells) { draw(cell.box, cell.load); }
 //
 // Cells     Resting and mobile proxies have separate cells, both in several sizes, so cells overlap. No edge of a
-//           proxy is longer than the edges of its cell. Along an axis with few proxies per cell, for example
-//           vertically on a terrain, one cell may span all proxies that have this cell size.
+//           proxy is longer than the edges of its cell. Along y or z, the cells of one size may span all proxies
+//           stored in these cells, if this makes searches cheaper: for example vertically on a terrain, where few
+//           proxies lie above each other.
 // A proxy   is stored in the cell that contains the min corner of its box. For a trembling proxy, the grid uses
 //           a larger box, within which the proxy moves (GridConfig::slack).
 // Unfiled   Some proxies are in no cell, and every query reads them: the largest proxies, all proxies of a grid with
@@ -31,7 +32,7 @@ struct FiledCell {
     std::size_t load = 0;  ///< number of proxies stored in the cell; at least 1
 };
 
-/// The cells of all proxies, except proxies with a NaN box.
+/// All cells that contain proxies, and the proxies in no cell. Proxies with a NaN box are in neither list.
 template <class Scalar>
 struct FiledCells {
     std::vector<FiledCell<Scalar>> cells;  ///< the fullest cell first

@@ -16,8 +16,9 @@
 //            use the same mode.
 // Callbacks  A collector may query the grid. In visit(), it may also change the grid, if no other thread queries
 //            until visit() returns. visit() never offers a removed proxy; it may offer proxies added meanwhile,
-//            and may offer moved proxies twice. Asserted: collectors of visitEach() or ConvexRegion queries, and
-//            PairFilters, do not change the grid; no collector calls update() or shiftOrigin().
+//            and may offer a proxy again that the collector changed. Asserted: collectors of visitEach() or
+//            ConvexRegion queries, and PairFilters, do not change the grid; no collector calls update() or
+//            shiftOrigin().
 // Memory     Calls that allocate can throw std::bad_alloc. No data is lost, and you can repeat the call. remove(),
 //            and move() without `parallelFor`, never allocate. Queries that sort proxies into cells need memory
 //            for a second table of the mobile proxies.
@@ -101,8 +102,9 @@ public:
     }
 
     /// Calls move(ids[i], boxes[i]) for each i, in order. `parallelFor` does not change the result, even if an id
-    /// occurs twice: in that case, the call runs on one thread. With `parallelFor`, the call needs about 10 bytes of
-    /// scratch memory per proxy. If it throws std::bad_alloc, only some proxies may have moved: repeat the call.
+    /// occurs twice: in that case, the call runs on one thread. With `parallelFor`, the call needs scratch memory:
+    /// about 6 bytes per index below indexLimit(), and 4 bytes per id passed. If it throws std::bad_alloc, only some
+    /// proxies may have moved: repeat the call.
     /// Asserted: both spans have the same length.
     /// Cost: as move() for each proxy.
     void move(std::span<const ProxyId> ids, std::span<const Box> boxes);
@@ -121,9 +123,9 @@ public:
     /// Removes the proxy; its id never becomes valid again. Cost: O(1).
     void remove(ProxyId id);
 
-    /// Removes all proxies. Later calls give the same results, order, cost and indices as a new grid; old ids stay
-    /// invalid. Keeps only the memory of records (64 bytes per index, 128 in double precision) and lists. Cost:
-    /// O(indexLimit()).
+    /// Removes all proxies. Later calls give the same results, order, cost and indices as a new grid. However, old
+    /// ids stay invalid, and indexLimit() does not fall. Keeps only the memory of records (64 bytes per index, 128 in
+    /// double precision) and of lists of indices: reserve() stays in effect. Cost: O(indexLimit()).
     /// Asserted: the grid has no Pairs (use Pairs::clear()); this thread runs no query. If not, the call does
     /// nothing.
     void clear();
@@ -131,9 +133,9 @@ public:
     /// Moves the origin to `shift` [m]: subtracts `shift` from every box of the grid and its Sweeps. Shift your
     /// regions, zones and terrains yourself. Returns the number of boxes that had to be rounded, not counting boxes
     /// so large that the shift is lost in rounding. Rounded boxes count as moved: some may begin to touch, but
-    /// overlapping boxes never separate. All other proxies keep their pairs. If resting, they stay resting, unless
-    /// they tremble (GridConfig::slack). Multiples of a large power of two, such as 1024 m, round fewest boxes. On
-    /// std::bad_alloc, changes nothing.
+    /// overlapping boxes never separate. All other proxies keep their pairs, and stay resting if they rested.
+    /// Exception: trembling or slow proxies with slack (GridConfig::slack) become mobile. Multiples of a large power
+    /// of two, such as 1024 m, round fewest boxes. On std::bad_alloc, changes nothing.
     /// Asserted: the shift is finite. If not, the call does nothing.
     /// Cost: up to three passes over all boxes. If cells change, plus the cost of an update(), in this call or in the
     /// next query or update().
@@ -148,7 +150,7 @@ public:
     /// Number of proxies, including proxies with a NaN box.
     [[nodiscard]] std::size_t size() const noexcept { return store_.proxies.size; }
 
-    /// Size for an array that is indexed by ProxyId::index: present and past indices are below it. Only
+    /// Size for an array that is indexed by ProxyId::index: all indices of present proxies are below it. Only
     /// releaseUnusedMemory(), an update() after a peak, and GridSnapshot::restore() lower it.
     [[nodiscard]] std::uint32_t indexLimit() const noexcept {
         return static_cast<std::uint32_t>(store_.proxies.records.size());
@@ -161,26 +163,29 @@ public:
                                                                      : ProxyId{};
     }
 
-    /// Identifies the set of proxies: when the number changes, stored query results are out of date. Every add(),
-    /// remove(), clear(), shiftOrigin() and GridSnapshot::restore() changes it. No two grids share a number.
+    /// Identifies the set of proxies and the origin: when the number changes, stored query results are out of date.
+    /// Every add(), remove(), clear(), shiftOrigin() and GridSnapshot::restore() changes it. move() does not,
+    /// although it can change query results. No two grids share a number.
     [[nodiscard]] std::uint64_t populationNumber() const noexcept { return store_.proxies.number; }
 
     /// Number of proxies whose box has a NaN.
     [[nodiscard]] std::size_t nanCount() const noexcept { return store_.proxies.nanCount; }
 
-    /// Calls visit(ProxyId, const Box&) for every proxy, in ascending index order. visit() may change the grid. Cost:
-    /// O(n) for n proxies. If indexLimit() exceeds 8 n, after a peak: O(n log n), and a temporary list.
+    /// Calls visit(ProxyId, const Box&) for every proxy, in ascending index order. This callback may change the grid,
+    /// but must not lower indexLimit(). Cost: O(n) for n proxies. If indexLimit() exceeds 8 n, after a peak:
+    /// O(n log n), and a temporary list.
     template <class Visit>
     void forEach(Visit&& visit) const;
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// Offers every proxy whose box is in `region` to `collector`, once each (regions.hpp, collectors.hpp). Returns
-    /// counts of the work.
-    /// Cost: grows with the cells that the region touches, up to about one test per proxy (16 tests if many rows of
-    /// cells share a bucket). Plus one test for each proxy that changed since the last sort into cells. A region with
-    /// a NaN tests only these changed proxies; a ray with a NaN in its fatness tests all proxies. In a cell with
-    /// hundreds of proxies, regions with bounds() test only long boxes, and boxes near the region along one axis.
+    /// Offers to `collector` every proxy whose key in `region` is from 0 to collector.limit() (regions.hpp,
+    /// collectors.hpp): once each, unless the collector changes the proxy. Returns counts of the work.
+    /// Cost: grows with the cells that the region touches, up to about one test for each proxy of the grid, or 16
+    /// tests for each if many cells share hash buckets. Plus one test for each proxy that changed since the last sort
+    /// into cells. A region with a NaN tests only these changed proxies; a ray with a NaN in its fatness tests all
+    /// proxies. In a cell with hundreds of proxies, regions with bounds() usually test only boxes near the region
+    /// along one axis (the axis that separates these boxes best), and boxes much longer than average along it.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
@@ -205,7 +210,8 @@ public:
     /// Cost: O(1), or as update() and a sort of the proxies.
     void expectRays(std::size_t count) const { store_.expectRays(count); }
 
-    /// Offers every proxy whose cellsOf() include `cell` to the collector. Cost: O(1) buckets; at most as visit().
+    /// Offers every proxy whose cellsOf() include `cell` to the collector, but never a proxy whose box is not finite.
+    /// Cost: O(1) buckets; at most as visit().
     template <class Collector>
     QueryCost visitCell(const std::array<std::int64_t, 3>& cell, Collector& collector) const;
 
@@ -233,11 +239,12 @@ public:
     /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Bytes of the box trees that only rays read, as part of memoryBytes(). 0 until enough rays were cast.
+    /// Bytes of the box trees that only rays read, as part of memoryBytes(). 0 until enough rays were cast or
+    /// expected (expectRays()).
     [[nodiscard]] std::size_t rayMemoryBytes() const noexcept;
 
-    /// Frees the box trees for rays. They are built again once rays have cost as much as building them. Asserted:
-    /// this thread runs no query.
+    /// Frees the box trees for rays. They are built again once rays, cast or expected, cost as much as building them.
+    /// Asserted: this thread runs no query.
     void releaseRayMemory() noexcept;
 
     /// Frees unused and reserved capacity, and scratch memory that later calls allocate again. Drops unused indices

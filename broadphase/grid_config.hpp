@@ -8,8 +8,8 @@
 
 namespace hashphase {
 
-/// Settings of a grid. The defaults suit any scene. Change a setting only after measuring its effect, or to repeat a
-/// measurement.
+/// Settings of a grid. The defaults suit any scene. Use other values only if you measured that they help, or to
+/// reproduce an earlier measurement.
 struct GridConfig {
     /// Edge [m] of the finest cells. If 0, the grid chooses cell sizes from the proxies' sizes, and chooses again
     /// when proxies change. Valid: 0, or 1e-30 to 1e30.

@@ -9,14 +9,14 @@
 //     snapshot.restore(pairs);  // back to the saved state
 //
 // Restored  After restore(), calls give the same results, order, cost and new ids as after save(). Only
-//           populationNumber() differs.
+//           populationNumber() differs. After read(), order and cost may differ, too.
 // Ids       After restore(), forget ids of proxies that were added after save(): new proxies may get equal ids.
 // Memory    about as many bytes as the grid; the snapshot keeps its memory for the next save(). On std::bad_alloc,
 //           restore() changes nothing, and save() leaves the snapshot empty.
 // Threads   During a call, no other thread may use the grid or this object.
 // Misuse    Asserted: this thread runs no query; if the grid has Pairs, you pass the Pairs. restore() needs a saved
-//           state, an equal GridConfig, and Sweeps if and only if Sweeps were saved. If a condition is broken,
-//           the call does nothing.
+//           state and an equal GridConfig. It needs Pairs if and only if Pairs were saved, and Sweeps if and only if
+//           Sweeps were saved. If a condition is broken, the call does nothing.
 // Cost      O(data of the grid, its Pairs and Sweeps)
 
 #include <broadphase/export.hpp>
@@ -57,7 +57,7 @@ public:
     /// Restores the saved state into the Pairs, their grid, and their Sweeps, if any.
     void restore(Pairs<Scalar>& pairs) const;
 
-    /// Returns a sentence that explains why restore() would fail; empty if it can succeed. Call this after read().
+    /// Returns a sentence that explains why restore() would fail; empty if it can succeed. Useful after read().
     [[nodiscard]] std::string faultFor(const Grid<Scalar>& grid) const;
     [[nodiscard]] std::string faultFor(const Pairs<Scalar>& pairs) const;
 

@@ -3,10 +3,10 @@
 
 // Moves many proxies on several threads. The result equals single moves in order.
 //
-// Only one thread writes the record of each proxy. Each part of the batch counts and lists its changes. Afterwards,
-// join() adds the changes of all parts to the store, in order. Mobile proxies, and proxies that stay within their
-// slack, move on any thread. For other proxies (at rest, sweeping, or with a NaN), join() calls Store::move() in the
-// order of the batch.
+// No two threads write the same record at once. Each part of the batch counts and lists its changes. Afterwards,
+// join() adds the changes of all parts to the store, in order. Settled proxies that stay within their enlarged box
+// move on any thread. So do mobile proxies that do not sweep and have no NaN, before or after the move. For all other
+// proxies, join() calls Store::move() in the order of the batch.
 
 #include <broadphase/parallel_for.hpp>
 #include <broadphase/store/store.hpp>

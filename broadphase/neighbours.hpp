@@ -26,8 +26,9 @@ class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Neighbours {
 public:
     /// Returns all pairs of proxies whose boxes are at most `distance` [m] apart, in any order. Each pair appears
     /// once. The distance is between nearest points, and 0 if boxes overlap. A negative or NaN distance finds
-    /// nothing. A box with a NaN has no neighbours. The result does not depend on `parallelFor`, and is valid until
-    /// the next call. Frees unused memory after 256 calls in a row with over eight times the needed capacity.
+    /// nothing. A box with a NaN has no neighbours. Neither the pairs nor their order depend on `parallelFor`. The
+    /// result is valid until the next find(). Frees unused memory after 256 calls in a row with over eight times the
+    /// needed capacity.
     /// Cost: as Grid::update(), plus O(pairs); at most O(n^2) for n proxies.
     [[nodiscard]] std::span<const ProxyPair> find(const Grid<Scalar>& grid, Scalar distance,
                                                   ParallelFor parallelFor = serialFor) &;

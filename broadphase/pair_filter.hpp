@@ -24,8 +24,8 @@ namespace hashphase {
 /// Decides which overlapping proxies make a pair: a function that takes two ids, or a function that takes many pairs.
 ///
 /// Calls    Pairs asks once when two proxies begin to overlap. It asks again about a refused pair when either
-///          proxy's box or groups change, and in refilter(). It never asks about ignored pairs, or pairs that groups
-///          refuse.
+///          proxy's box or groups change, and in refilter(), which also asks again about accepted pairs. It never
+///          asks about ignored pairs, or pairs that groups refuse.
 /// Order    ascending by ids. Thousands of candidates may arrive in parts; in that case, each part is sorted.
 /// Threads  The filter runs on the thread that calls Pairs.
 /// Misuse   Asserted: the filter does not change the grid. It may query the grid.
@@ -72,7 +72,8 @@ private:
 }
 
 /// The pairs that began and the pairs that ended. Each list is sorted. Lists of update() are valid until the next
-/// update(). Lists of other functions are valid until the next call that returns PairChanges.
+/// update(). Lists of other functions are valid until the next call that returns PairChanges. Pairs::clear() and
+/// Pairs::releaseUnusedMemory() invalidate all lists.
 struct PairChanges {
     std::span<const ProxyPair> born;  ///< new pairs
     std::span<const ProxyPair> died;  ///< ended pairs, including pairs of removed proxies

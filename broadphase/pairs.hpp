@@ -14,9 +14,9 @@
 // Threads  No other thread may use the grid or this object during a call.
 // Failure  Calls can throw std::bad_alloc, and exceptions of the filter. If update() throws, the next update()
 //          reports all changes since the last update() that returned. Any other call that throws changes nothing.
-// Memory   grows with proxies and pairs. Pairs remembers refused candidates, up to 32 per proxy plus four per pair.
-//          If more are refused, it remembers the pairs instead. In that case, update() searches again for all
-//          overlaps of changed proxies.
+// Memory   grows with proxies and pairs. Pairs normally remembers refused candidates: all other candidates are pairs.
+//          Above a total of 32 per proxy plus four per pair, it remembers the pairs instead. In that case, update()
+//          searches again for all overlaps of changed proxies.
 // Late     You may create Pairs for a grid that has proxies, and replace Pairs between two updates.
 // Misuse   Asserted: a grid has at most one Pairs; the filter calls only const functions of the grid and Pairs.
 
@@ -52,8 +52,8 @@ public:
     void setSweeps(Sweeps<Scalar>* sweeps);
 
     /// Ends the frame: updates the grid, and returns the pairs that began or ended since the last update. Each change
-    /// appears once. The result does not depend on `parallelFor`. The filter runs on the caller's thread. Asserted:
-    /// this thread runs no query.
+    /// is returned once: update() omits changes that other calls have returned. The result does not depend on
+    /// `parallelFor`. The filter runs on the caller's thread. Asserted: this thread runs no query.
     /// If over 256 proxies share a cell (or hash bucket), update() sorts them along one axis. To keep long paths
     /// cheap, update() searches the path of a sweeping proxy in parts or as a ray. For pairs of sweeping proxies, it
     /// cuts the frame into up to 64 time slices.
@@ -64,8 +64,8 @@ public:
 
     /// Finds pairs of this proxy that began to overlap since the last update. Returns them as born; update() does not
     /// repeat them. For sweeping proxies, only the boxes at the start of paths count. May also return died pairs:
-    /// pairs with a removed proxy that were returned as born since the last update. Asserted: the proxy is alive.
-    /// Cost: as a box query.
+    /// calls after the last update() returned them as born, and then one of their proxies was removed. Asserted: the
+    /// proxy is alive. Cost: as a box query.
     PairChanges findPairsNow(ProxyId id, PairFilter filter) &;
 
     /// Like findPairsNow(id, filter), but only for proxies in `others`, which must contain no duplicates. Skips ids
@@ -92,7 +92,8 @@ public:
     /// and making one box query per changed proxy.
     PairChanges refilter(std::span<const ProxyId> ids, PairFilter filter) &;
 
-    /// Asks the filter again about these pairs only. Skips elements that are not a pair. Cost: O(pairs).
+    /// Asks the filter again about these pairs only. Skips elements that are not a pair, such as refused candidates.
+    /// Cost: O(pairs).
     PairChanges refilter(std::span<const ProxyPair> pairs, PairFilter filter) &;
 
     /// refilter() for all proxies. Call it when the filter has changed. Cost: as finding all pairs from scratch, plus
@@ -125,8 +126,8 @@ public:
     /// object. Reports no died pairs. Asserted: this thread runs no query or filter. Cost: O(Grid::indexLimit()).
     void clear();
 
-    /// Appends all pairs of the last update, sorted, to `pairs`. Asserted: the grid has not changed since. Cost: as
-    /// finding all pairs from scratch.
+    /// Appends all pairs that exist now, sorted, to `pairs`. Asserted: the grid has not changed since the last
+    /// update(). Cost: as finding all pairs from scratch.
     void collect(std::vector<ProxyPair>& pairs) const;
 
     /// True when the two proxies are a pair after the last call that returned PairChanges. Later moves do not count.
@@ -144,8 +145,8 @@ public:
     /// pairs that groups refuse.
     [[nodiscard]] std::size_t refusedCount() const noexcept { return state_.known.refusedCount(); }
 
-    /// True while Pairs remembers pairs instead of refused candidates (see Memory). May stay true for up to
-    /// 256 updates with changed proxies after the refused candidates are few again.
+    /// True while Pairs remembers pairs instead of refused candidates (see Memory). After the refused candidates are
+    /// few again, may stay true for up to 256 updates with changed proxies.
     [[nodiscard]] bool remembersPairs() const noexcept { return state_.known.arePairs(); }
 
     /// Returns what the last update() cost.

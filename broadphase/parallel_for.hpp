@@ -17,8 +17,8 @@ using LoopBody = FunctionRef<void(std::size_t begin, std::size_t end)>;
 /// `grain` of 0 means 1.
 ///
 /// Write your own loop for any task system, or use bulletFor (bullet_parallel_for.hpp) or tbbFor
-/// (tbb_parallel_for.hpp). All give the same results. For speed, cut equal counts into equal ranges, and run each
-/// range on the same thread every time: the cache of this thread holds the data.
+/// (tbb_parallel_for.hpp). All give the same results. For speed, always cut the same count into the same ranges, and
+/// run each range on the same thread: its cache holds the data.
 using ParallelFor = FunctionRef<void(std::size_t count, std::size_t grain, LoopBody body)>;
 
 /// The serial loop: all iterations in one call, on the caller's thread.

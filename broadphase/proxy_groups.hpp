@@ -6,8 +6,8 @@
 
 namespace hashphase {
 
-/// The groups with which a proxy may pair: see mayPair() and Grid::setGroups(). Your program defines the bits. By
-/// default, all proxies may pair. A proxy whose group or mask is 0 pairs with no proxy.
+/// The groups of a proxy, and the groups that it may pair with: see mayPair() and Grid::setGroups(). Your program
+/// defines the bits. By default, all proxies may pair. A proxy whose group or mask is 0 pairs with no proxy.
 ///
 ///     constexpr std::uint32_t kWalls = 1, kBullets = 2;
 ///     grid.setGroups(bullet, {.group = kBullets, .mask = kWalls});  // bullets ignore each other

@@ -10,12 +10,13 @@
 // Agents      An agent is a proxy at the centre of its box (positionOf() in position_region.hpp). Each take() numbers
 //             the agents from 0, in spatial order.
 // Neighbours  The neighbours of an agent are the other agents with (dx^2 + dy^2) + dz^2 <= radius^2. Each operation
-//             rounds to Scalar. Radii outside 2^-60 to 2^60 (double: 2^-480 to 2^480) are first scaled by a power of
-//             two. If a finds b, b finds a. Results are equal on all instruction sets, with any number of threads.
+//             rounds to Scalar. For radii outside 2^-60 to 2^60 (double: 2^-480 to 2^480), dx, dy, dz and the radius
+//             are first multiplied by the same power of two. If a finds b, b finds a. Results are equal on all
+//             instruction sets, with any number of threads.
 // Bad data    A proxy with a NaN, infinite or inverted box is not an agent: see leftOutCount(). A negative or NaN
 //             radius gives no neighbours. An infinite radius gives all other agents.
 // Threads     Const functions may run on several threads at once. During other calls, no other thread may use this
-//             object. take() reads the grid, as queries do.
+//             object, except that visit() may call const functions. take() reads the grid, as queries do.
 // Units       metres, or the grid's unit of length
 // See also    Neighbours (neighbours.hpp) lists pairs of boxes.
 
@@ -57,8 +58,8 @@ public:
 
     /// Makes agents of all proxies that the filter accepts, for searches with `radius` [m]. Calls the filter on this
     /// thread and the threads of `parallelFor`, twice for some proxies. If memory runs out or the filter throws,
-    /// there are no agents. Frees unused memory after 256 calls in a row with over eight times the needed capacity.
-    /// Asserted: the filter changes neither the grid nor this object.
+    /// take() throws, and there are no agents. Frees unused memory after 256 calls in a row with over eight times the
+    /// needed capacity. Asserted: the filter changes neither the grid nor this object.
     /// Cost: O(proxies), in a few passes.
     void take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter = acceptAll,
               ParallelFor parallelFor = serialFor);
@@ -90,9 +91,9 @@ public:
 
     /// Calls visit(std::uint32_t agent, std::span<const std::uint32_t> neighbours) for every agent, on the threads of
     /// `parallelFor`. The span is valid until visit() returns. The order of neighbours does not depend on
-    /// `parallelFor`. Returns the cost; `hits` is the number of neighbours of all agents. Asserted: visit() calls only
-    /// const functions of this object. Cost: O(n m) for n agents, with m agents in the cells around each; at most
-    /// O(n^2).
+    /// `parallelFor`. Returns the cost; `hits` is the number of neighbours of all agents. Asserted: visit() calls
+    /// only const functions of this object. Cost: O(n m) for n agents, with m agents in the cells around each; at
+    /// most O(n^2).
     template <std::invocable<std::uint32_t, std::span<const std::uint32_t>> Visit>
     QueryCost forEach(Visit&& visit, ParallelFor parallelFor = serialFor) {
         using Target = std::remove_reference_t<Visit>;

@@ -9,14 +9,15 @@
 //     CollectClosest<float> closest;
 //     grid.visit(SphereRegion<float>(center, 10), closest);  // the box nearest to `center`, within 10 m
 //
-// key() decides the result. bounds() only saves work: the box may be too large, but never too small. A constant
-// kIsItsBounds in the class promises that every box that overlaps bounds() has the key 0. A region along a line has
-// segment() instead of bounds(). segment() returns a RayRegion, whose key must be at most the region's key for every
-// box in the region. A convex region has volume() instead of bounds().
+// key() decides the result. bounds() only saves work: the box may be too large, but never too small. If the class has
+// a constant kIsItsBounds, of any value, queries may skip key(): every box that overlaps bounds() must have key 0. A
+// region along a line has segment() instead of bounds(). segment() returns a RayRegion, whose key must be at most the
+// region's key for every box in the region. ConvexRegion has an internal volume() instead of bounds(). Do not give
+// your regions a volume().
 //
 // Others   PositionRegion (positions, not boxes), CellsRegion (estimates the proxies in a ball), MovingBoxRegion
 //          (first contact of a moving box), ConvexRegion (frusta), and any class of yours with these members
-// Units    metres; a ray's key is the fraction of its length, 0 at `from`, 1 at `to`
+// Units    metres; keys differ: m^2 in SphereRegion, a fraction from 0 to 1 in RayRegion
 // NaN      A region with a NaN is empty: queries find no box.
 // Threads  values; use them from any thread
 
@@ -171,7 +172,8 @@ public:
         return enter <= exit ? std::min(enter, Scalar(1)) : Scalar(-1);
     }
 
-    /// True when the region is empty: an end or the length of the segment is NaN or infinite.
+    /// True if an end or the length of the segment is NaN or infinite: the region is empty. If only `fatness` has a
+    /// NaN, the region is empty too, but isEmpty() is false.
     [[nodiscard]] bool isEmpty() const noexcept { return detail::anyNan(direction_); }
     /// The start of the ray [m].
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }

@@ -18,10 +18,10 @@ enum class Sweep : std::uint8_t {
 /// The cost of sweeps in an update.
 struct SweepCost {
     std::uint32_t sweeping = 0;        ///< proxies that swept
-    std::uint32_t segments = 0;        ///< parts of paths that were searched as a box
+    std::uint32_t segments = 0;        ///< searched boxes, each around a path or a part of a path
     std::uint32_t rays = 0;            ///< long paths that were searched as a ray
-    std::uint64_t boxesTested = 0;     ///< box tests with segments, rays and sweeping proxies
-    std::uint64_t contactsTested = 0;  ///< calls of firstContact(), except for rays
+    std::uint64_t boxesTested = 0;     ///< tests with segments and rays, and between sweeping boxes
+    std::uint64_t contactsTested = 0;  ///< calls of firstContact(), not counting calls for rays
 };
 
 }  // namespace hashphase

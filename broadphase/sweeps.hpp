@@ -15,7 +15,8 @@
 //           Pairs::update(). Box and displacement stay until you set them again.
 // Queries   Grid queries use the box in the grid. This box may differ from the moving box, for example contain the
 //           whole path. Sweeps::visit() searches along the path, more exactly.
-// Modes     All modes find the same pairs, at different costs: the exact firstContact() confirms each pair.
+// Modes     All modes except Sweep::none find the same pairs, at different costs: the exact firstContact() confirms
+//           each pair.
 // Cost      A sweep takes time even at low speed. Sweep::box searches the box around the path. Other proxies cost no
 //           more than without sweeps.
 // Threads   visit() may run on several threads at once. During other calls, no other thread may use the grid or
@@ -55,8 +56,8 @@ public:
     Sweeps& operator=(const Sweeps&) = delete;
 
     /// Lets the proxy's box sweep by `displacement` [m] in each frame, until the next set(). A zero displacement or
-    /// Sweep::none ends the sweep. On std::bad_alloc, changes nothing. Asserted: this thread runs no query that
-    /// forbids changes. Cost: O(1) amortised.
+    /// Sweep::none ends the sweep. On std::bad_alloc, changes nothing. Asserted: not called within visitEach(), a
+    /// ConvexRegion query or a PairFilter (grid.hpp, Callbacks). Cost: O(1) amortised.
     void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
 
     /// Lets `way.box` sweep instead of the box in the grid. The proxy's pairs depend only on `way`. Grid queries
@@ -70,11 +71,11 @@ public:
     /// Number of sweeping proxies, including proxies removed from the grid since the last update.
     [[nodiscard]] std::size_t size() const noexcept { return sweeping_.motions.size(); }
 
-    /// Like Grid::visit(), but finds sweeping proxies along their paths. Tests the box around the path, or boxes
-    /// around up to 64 parts of the path. The key is the smallest key of these boxes. Finds every proxy that passes
-    /// through the region. May also find proxies that pass near it. With a PositionRegion or Containment::inside, a
-    /// sweeping proxy is certain to be found only if its box at the start of the path is in the region. Cost: as
-    /// Grid::visit(), plus a test for each part of each path.
+    /// Like Grid::visit(), but finds sweeping proxies along their paths. With Sweep::box, tests the box around the
+    /// path. With other modes, tests boxes around up to 64 parts of the path. The key is the smallest key of these
+    /// boxes. Finds every proxy that passes through the region. May also find proxies that pass near it. With a
+    /// PositionRegion or Containment::inside, a sweeping proxy is certain to be found only if its box at the start of
+    /// the path is in the region. Cost: as Grid::visit(), plus a test for each part of each path.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
@@ -83,9 +84,9 @@ public:
     /// Bytes held, including unused capacity.
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Frees unused capacity, including memory for indices that the grid has dropped. Also frees scratch memory that
-    /// the next update allocates again. Asserted: this thread runs no query. Cost: O(dropped indices), plus a copy of
-    /// the remaining data.
+    /// Frees unused capacity, including memory for indices from Grid::indexLimit() on. To lower this limit, call
+    /// Grid::releaseUnusedMemory() first. Also frees scratch memory that the next update allocates again. Asserted:
+    /// this thread runs no query. Cost: O(freed indices), plus a copy of the remaining data.
     void releaseUnusedMemory() noexcept;
 
     /// Invariant: each motion is stored at the index of its proxy, and no other index has a motion. Returns a

@@ -12,8 +12,9 @@
 //           change the result.
 // Threads   For all functions, the thread rules of grid queries hold (grid.hpp). Sight::look() calls the filters on
 //           all threads of `parallelFor`. During look(), no other thread may use the Sight object.
-// Bad data  A viewer sees nothing if its range or half angle is negative or NaN, its eye is not finite, or its
-//           direction is zero or not finite. A proxy is not seen if its distance overflows.
+// Bad data  A viewer sees nothing if its range or half angle is negative or NaN, or its eye is not finite. With a
+//           half angle below pi, it also sees nothing if its direction is zero or not finite. A proxy is not seen if
+//           its distance overflows.
 
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>
@@ -34,7 +35,7 @@ namespace hashphase {
 template <class Scalar>
 struct Viewer {
     Vector3<Scalar> eye = Vector3<Scalar>::Zero();           ///< [m]
-    Vector3<Scalar> direction = Vector3<Scalar>::UnitX();    ///< axis of the cone, of any length
+    Vector3<Scalar> direction = Vector3<Scalar>::UnitX();    ///< axis of the cone; any length but 0
     Scalar range = std::numeric_limits<Scalar>::infinity();  ///< [m]
     /// Angle between the direction and the cone's surface [rad]. If pi or more, the direction is ignored.
     Scalar halfAngle = std::numbers::pi_v<Scalar>;

@@ -51,7 +51,8 @@ enum class Presence : std::uint8_t {
     box,       ///< any part of its box
 };
 
-/// A closed volume: includes its surface. In a ConvexRegion with Containment::inside, the whole box must be inside.
+/// A closed volume: includes its surface. In a ConvexRegion with Containment::inside, the whole box must be inside,
+/// whatever `presence` is.
 template <class Scalar>
 struct Zone {
     std::variant<BoxRegion<Scalar>, SphereRegion<Scalar>, ConvexRegion<Scalar>> shape;

@@ -5,8 +5,8 @@
 //
 // Scheduler If no scheduler is set, loops run on the caller's thread. A Bullet built without BT_THREADSAFE has no
 //           scheduler, but you can set your own.
-// Lifetime  Keep the result of btCreateDefaultTaskScheduler() until the program ends. Its destructor may overwrite
-//           memory of the program (a bug in btThreadSupportPosix::waitForResponse()).
+// Lifetime  Never delete the result of btCreateDefaultTaskScheduler(): its destructor may overwrite memory of the
+//           program (a bug in btThreadSupportPosix::waitForResponse()).
 
 #include <broadphase/core/first_exception.hpp>
 #include <broadphase/parallel_for.hpp>

@@ -28,7 +28,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// What drawCells() draws.
 struct CellDrawing {
     /// If true, also draws the grid's boxes of all proxies, including margins and the whole path of a fast body.
-    /// Boxes of proxies in cells are grey for resting proxies, and light blue for mobile proxies.
+    /// Resting proxies in cells have grey boxes, and so do proxies that move only within their slack
+    /// (GridConfig::slack). All other proxies in cells have light blue boxes.
     bool boxes = false;
 
     /// The maximum number of lines. Each cell or box is drawn completely or not at all. The default allows 5,000

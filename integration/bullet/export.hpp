@@ -2,8 +2,8 @@
 #pragma once
 
 // Export macros of the shared libraries hashphase_bullet and hashphase_bullet_float64: see broadphase/export.hpp.
-// HASHPHASE_BULLET_IS_STATIC is 1 if these two libraries are static (like Bullet), but the other libraries are
-// shared.
+// CMake and pkg-config set HASHPHASE_BULLET_IS_STATIC to 1 if these two libraries are static (like Bullet), but the
+// other libraries are shared.
 
 #include <broadphase/export.hpp>
 

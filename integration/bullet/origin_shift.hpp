@@ -12,8 +12,9 @@
 // Memory   When memory runs out, throws std::bad_alloc and shifts nothing.
 // Misuse   Asserted: the world uses this broadphase, the shift is finite, and there are no soft bodies or
 //          multibodies, which cannot be shifted. If a condition is broken, returns false and shifts nothing.
-// RTTI     The overload for btCollisionWorld needs RTTI, to see whether that world is a btDynamicsWorld. Without RTTI
-//          (-fno-rtti, MSVC), that world must have no rigid bodies (asserted, as above).
+// RTTI     The overload for btCollisionWorld needs RTTI in this library, Bullet and the world's class, to see whether
+//          that world is a btDynamicsWorld. Without RTTI (-fno-rtti), and always with MSVC, that world must have no
+//          rigid bodies (asserted, as above).
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>

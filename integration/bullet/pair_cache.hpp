@@ -8,19 +8,22 @@
 //     btDbvtBroadphase broadphase(&pairCache);
 //
 // Threads   Several threads may call const members at once. During other calls, no other thread may use the cache.
-// Pointers  Pairs move in memory when a pair is added or removed, and in releaseUnusedMemory(). With
-//           PairOrder::canonical, pairs also move when the whole array is read. Do not resize or reorder the array.
+// Pointers  Pairs move in memory when a pair is added or removed, and in sortOverlappingPairs() and
+//           releaseUnusedMemory(). With PairOrder::canonical, pairs also move when the whole array is read: by
+//           processAllOverlappingPairs(), getOverlappingPairArray() or the non-const getOverlappingPairArrayPtr().
+//           Do not resize or reorder the array.
 // Callbacks The ghost callback and destructors of freed algorithms run after the change that caused them. They may
 //           change the cache, and so may the callback of processAllOverlappingPairs(). The filter must not change the
 //           cache.
 // Removal   If your program removes a pair, the next calculateOverlappingPairs() of a SpatialHashBroadphase adds it
-//           again, unless its proxies have separated or the filter refuses it. In canonical order, the algorithms
-//           of pairs that removeOverlappingPair() and update() remove are freed later: when the whole array is next
-//           read, or when the pairs of any proxy are next removed or cleaned. Other calls free algorithms at once.
+//           again, unless its proxies have separated or the filter refuses it. With PairOrder::canonical, the
+//           algorithms of pairs that removeOverlappingPair() and update() remove outside
+//           processAllOverlappingPairs() are freed later: when the whole array is next read, or when the pairs of
+//           any proxy are next removed or cleaned. Other calls free algorithms at once.
 // Memory    Throws std::bad_alloc when memory runs out. In that case, a call for one pair has changed nothing. A call
 //           for many pairs may have removed some or all of its pairs. It has added none, or some if it works like
 //           single calls (see update()). Removing one proxy's pairs always works; without memory, it scans all
-//           pairs. Bullet's own arrays do not report that memory ran out.
+//           pairs. Exception: the array of pairs is a Bullet array, which crashes if it cannot grow.
 // NULL      If the dispatcher is NULL, no algorithms are freed, as in Bullet. Clients may be NULL.
 // Misuse    Asserted: the two proxies of a pair differ, unique ids of live proxies differ and are not negative, and
 //           the filter does not change the cache.
@@ -90,7 +93,9 @@ public:
     /// Returns both unique ids; the lower id is in the upper 32 bits.
     [[nodiscard]] std::uint64_t ids() const noexcept { return ids_; }
 
-    /// Returns false if the unique id of either proxy has changed, for example because the proxy was destroyed.
+    /// Returns false if the unique id of either proxy has changed, for example because a SpatialHashBroadphase
+    /// destroyed the proxy. Reads both proxies, so do not call it after a proxy was freed: btDbvtBroadphase frees
+    /// destroyed proxies at once, SpatialHashBroadphase only with unused memory (see its releaseUnusedMemory()).
     [[nodiscard]] bool isUpToDate() const noexcept {
         return static_cast<std::uint32_t>(lower_->m_uniqueId) == ids_ >> 32 &&
                static_cast<std::uint32_t>(upper_->m_uniqueId) == (ids_ & 0xffffffffU);
@@ -108,7 +113,8 @@ using ProxyCouple [[deprecated("BulletProxyPair")]] = BulletProxyPair;
 class HASHPHASE_BULLET_EXPORT PairCache final : public btOverlappingPairCache {
 public:
     /// In each pair, m_pProxy0 is the proxy with the lower key: by default the lower unique id, as in Bullet. If the
-    /// broadphase reuses unique ids, pass another key. Asserted: `key` is not null.
+    /// broadphase reuses unique ids, the cache works, but equal sets of objects may get different orders. To prevent
+    /// this, pass another key. Asserted: `key` is not null.
     explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId)
         : order_(order), key_(key) {
         HASHPHASE_ASSERT(key != nullptr,
@@ -133,7 +139,7 @@ public:
     btBroadphasePair* addOverlappingPair(btBroadphaseProxy* proxy0,
                                          btBroadphaseProxy* proxy1) override;
 
-    /// As addOverlappingPair(), but does not ask the filter.
+    /// As addOverlappingPair(), but accepts every pair: does not call needsBroadphaseCollision().
     btBroadphasePair* addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1);
 
     /// Removes the pair, frees its algorithm (see Removal) and calls the ghost callback. Returns the pair's
@@ -150,13 +156,13 @@ public:
     // --- Many pairs ------------------------------------------------------------------------------
 
     /// Removes the pairs of `died`, then adds the pairs of `born` without asking the filter. Skips pairs of `died`
-    /// that are missing, and pairs of `born` that are present. In order of arrival, the first added pairs take the
-    /// places of the first removed pairs. Further added pairs go to the end; if fewer are added, pairs from the end
-    /// fill the gaps. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like single
-    /// calls. For thousands of pairs, runs on the threads of `parallelFor`. The result does not depend on the number
-    /// of threads. Callbacks run on the caller's thread. If the number of present pairs plus born.size() exceeds
-    /// kMostPairs, throws std::length_error and changes nothing. Cost: O(1) for each pair; single calls cost three
-    /// times as much.
+    /// that are missing, and pairs of `born` that are present. With PairOrder::arrival, the first added pairs take
+    /// the places of the first removed pairs. Further added pairs go to the end; if fewer are added, pairs from the
+    /// end fill the gaps. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like
+    /// single calls. For thousands of pairs, runs on the threads of `parallelFor`. The result does not depend on the
+    /// number of threads. Callbacks run on the caller's thread. If the number of present pairs plus born.size()
+    /// exceeds kMostPairs, throws std::length_error and changes nothing. Cost: O(1) for each pair; single calls cost
+    /// three times as much.
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
                 btDispatcher* dispatcher, ParallelFor parallelFor);
     void update(std::span<const BulletProxyPair> died, std::span<const BulletProxyPair> born,
@@ -180,10 +186,10 @@ public:
 
     // --- The pairs of many proxies ---------------------------------------------------------------
 
-    /// Removes the pairs of all these proxies, then frees their algorithms. In canonical order, frees them in the
-    /// order of single calls. In order of arrival, frees them in any order, and may order pairs differently than
-    /// single calls. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like single
-    /// calls. Cost: proportional to the proxies' pairs, plus at most one pass over all pairs.
+    /// Removes the pairs of all these proxies, then frees their algorithms. With PairOrder::canonical, frees them in
+    /// the order of single calls. With PairOrder::arrival, frees them in any order, and may order pairs differently
+    /// than single calls. If a ghost callback is set, or within processAllOverlappingPairs(), works exactly like
+    /// single calls. Cost: proportional to the proxies' pairs, plus at most one pass over all pairs.
     void removeOverlappingPairsContainingProxies(std::span<btBroadphaseProxy* const> proxies,
                                                  btDispatcher* dispatcher);
 
@@ -260,7 +266,7 @@ public:
         return static_cast<std::size_t>(pairs_.capacity());
     }
 
-    /// Returns the number of pairs listed so far by calls that remove or clean the pairs of proxies.
+    /// Returns the number of pairs visited so far by calls that remove or clean the pairs of proxies.
     [[nodiscard]] std::uint64_t pairsVisited() const noexcept { return pairsVisited_; }
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
@@ -272,7 +278,7 @@ public:
     /// Returns a sentence about a broken invariant; empty if all of these hold:
     /// - Every pair can be found by the unique ids of its proxies.
     /// - Every pair has the proxy with the lower key first.
-    /// - Every chained pair is exactly once in the chain of each of its proxies.
+    /// - Every pair is exactly once in the internal pair list of each of its proxies, or in no such list.
     /// - An array that is marked as sorted is in canonical order.
     [[nodiscard]] std::string validate() const;
 

@@ -52,8 +52,8 @@ inline namespace HASHPHASE_BULLET_NAMESPACE {
 
 /// A class derived from World, with the same constructors, which simulates exactly as World does. World is
 /// btCollisionWorld, btDiscreteDynamicsWorld, btDiscreteDynamicsWorldMt, btSoftRigidDynamicsWorld,
-/// btMultiBodyDynamicsWorld, or your own class derived from one of these. updateAabbs() sets all boxes with one call
-/// of SpatialHashBroadphase::setAabbs().
+/// btMultiBodyDynamicsWorld, or your own class derived from one of these, which must not override updateAabbs().
+/// ParallelAabbs overrides updateAabbs() to set all boxes with one call of SpatialHashBroadphase::setAabbs().
 template <class World>
 class ParallelAabbs : public World {
     static_assert(std::is_base_of_v<btCollisionWorld, World>,
@@ -65,10 +65,10 @@ class ParallelAabbs : public World {
 public:
     using World::World;
 
-    /// Sets the box of each object as World does. After setForceUpdateAllAabbs(false), sets only the boxes of active
-    /// objects. Boxes include Bullet's contact margin and, if m_useContinuous is set, the predicted path. If a box is
-    /// too large, Bullet removes the object from the simulation, and prints a warning. Cost: O(objects), plus
-    /// setAabbs(). Memory: 40 bytes for each object (72 in double precision).
+    /// Sets the box of each object as btCollisionWorld::updateAabbs() does. After setForceUpdateAllAabbs(false), sets
+    /// only the boxes of active objects. Boxes include Bullet's contact margin and, if m_useContinuous is set, the
+    /// predicted path. If a box is too large, Bullet removes the object from the simulation, and prints a warning.
+    /// Cost: O(objects), plus setAabbs(). Memory: 40 bytes for each object (72 in double precision).
     void updateAabbs() override {
         if (!aabbs_.update(*this)) {
             World::updateAabbs();

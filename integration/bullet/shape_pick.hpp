@@ -29,7 +29,7 @@ public:
     explicit ShapeTest(const SpatialHashBroadphase&&) = delete;
 
     /// Returns the hit of btCollisionWorld::rayTestSingle(), as a fraction of the ray's length. If no hit is below
-    /// `limit`, returns nothing. Ignores the ray's fatness. Bullet may report a hit up to 2 cm in front of the
+    /// `limit`, returns nothing. Ignores the ray's fatness. Bullet may report a hit up to 0.02 units in front of the
     /// proxy's box. In that case, returns the fraction at which the ray enters the box. Asserted: the proxy is alive.
     [[nodiscard]] std::optional<btScalar> operator()(ProxyId id, const RayRegion<btScalar>& ray,
                                                      btScalar limit) const;

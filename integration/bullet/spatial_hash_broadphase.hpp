@@ -9,9 +9,10 @@
 // eagerGroups, and ghosts. A ghost gets its pairs at once when it is created or moved, and when another object is
 // created in its box or jumps into it.
 //
-// Threads   Any number of threads may run ray queries and aabbTest() at once, also nested. During any other call, no
-//           other thread may use the broadphase, as in Bullet.
-// Units     the units of the world, whatever they are
+// Threads   Any number of threads may run ray queries, aabbTest(), getAabb(), proxyOf(), idOf(), and queries of
+//           grid() and sweeps() at the same time, also nested. During any other call, no other thread may use the
+//           broadphase, as in Bullet.
+// Units     Any unit of length that the whole world uses. Comments write [m] for it.
 // Clients   btCollisionObjects or NULL. For other types, set eagerGhosts to false, and do not use sweeps,
 //           closestRay() or collisionChecksChanged().
 // Bad data  A box with a NaN makes no pair; the first such box is reported (diagnostics.hpp). Infinite, huge and
@@ -21,8 +22,9 @@
 //           proxy that a callback creates or moves, and may report a moved proxy twice. Do not remove an object that
 //           Bullet is working on. Asserted: the overlap filter only queries; no callback calls
 //           calculateOverlappingPairs(), shiftOrigin(), resetPool() or releaseUnusedMemory().
-// Memory    Throws std::bad_alloc when memory runs out; repeat the call. A failed createProxy() has created nothing.
-//           A failed shiftOrigin() has shifted nothing. A failed setAabb() has moved the proxy. The next
+// Memory    Throws std::bad_alloc when memory runs out. In that case, repeat the call, except createProxies(), which
+//           may have created some proxies. A failed createProxy() has created nothing. A failed shiftOrigin() has
+//           shifted nothing. A failed setAabb() has moved the proxy, but perhaps not set its sweep. The next
 //           calculateOverlappingPairs() that does not throw completes the pairs of the cache and of ghosts.
 // Misuse    Asserted: proxies are alive and of this broadphase, all spans of a call have equal lengths, rays have
 //           callbacks.
@@ -63,7 +65,8 @@ public:
     explicit SpatialHashBroadphase(const SpatialHashConfig& config = {});
 
     /// Uses `pairCache`, which must outlive the broadphase. If it is nullptr, creates its own as above. Changes a
-    /// PairCache in batches, and any other cache pair by pair. Asserted: the cache has no pairs yet.
+    /// PairCache in batches, and any other cache pair by pair. Here and below, a PairCache passed as a
+    /// btOverlappingPairCache* counts as another cache. Asserted: the cache has no pairs yet.
     explicit SpatialHashBroadphase(PairCache* pairCache, const SpatialHashConfig& config = {});
     explicit SpatialHashBroadphase(btOverlappingPairCache* pairCache,
                                    const SpatialHashConfig& config = {});
@@ -121,12 +124,12 @@ public:
                   btBroadphaseAabbCallback& callback) const;
 
     /// Updates the cache's pairs. Afterwards, the cache holds exactly the pairs of overlapping proxies that its
-    /// filter accepts. With SpatialHashConfig::sweep, it also holds pairs of proxies that meet on their paths.
-    /// Persisting pairs are not touched. First removes the separated pairs, then adds the new pairs, both sorted by
-    /// their proxies' ids. Changes and order depend on the boxes at the last calculation and now, not on the calls
-    /// between. Finally, adds pairs again that the program removed from a PairCache, unless their proxies separated
-    /// or the filter refuses them. A cache not passed as a PairCache gets such pairs back only when the proxies meet
-    /// again.
+    /// filter accepts (for changed groups and masks, and pairs that the program removed, see below). With
+    /// SpatialHashConfig::sweep, it also holds pairs of proxies that meet on their paths. Persisting pairs are not
+    /// touched. First removes the separated pairs, then adds the new pairs, both sorted by ProxyId. Changes and order
+    /// depend on the boxes at the last calculation and now, not on the calls between. Finally, adds pairs again that
+    /// the program removed from a PairCache, unless their proxies separated or the filter refuses them. A cache not
+    /// passed as a PairCache gets such pairs back only when the proxies meet again.
     /// You may write groups and masks at any time. A newly allowed pair begins after the box of one of its proxies
     /// changes. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), the box need not change: call
     /// setAabb() with the old box for the proxy whose group or mask you changed. A pair that is no longer allowed
@@ -165,18 +168,18 @@ public:
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
 
-    /// Removes the pairs of all these proxies through the pair cache, proxy by proxy, and then the proxies. Asserted:
-    /// `proxies` has no duplicates. Order and cost with a PairCache: as
-    /// PairCache::removeOverlappingPairsContainingProxies(). Cost with another cache: as destroyProxy() for each.
+    /// Removes the pairs of all these proxies through the pair cache, and then the proxies. Asserted: `proxies` has
+    /// no duplicates. Order and cost with a PairCache: as PairCache::removeOverlappingPairsContainingProxies(). With
+    /// another cache, removes the pairs proxy by proxy; cost: as destroyProxy() for each.
     void destroyProxies(std::span<btBroadphaseProxy* const> proxies, btDispatcher* dispatcher);
 
     // --- Beyond Bullet ---------------------------------------------------------------------------
 
     /// As btCollisionWorld::rayTest(), but tests objects from near to far, and stops when no nearer hit is possible.
-    /// Reports no hit more than 2 cm beyond callback.m_closestHitFraction. A ClosestRayResultCallback gets an equal
-    /// result, but may keep another of several hits at an equal fraction. For soft bodies, use rayTest() of their
-    /// world. Returns the query's cost. Cost: at most as this broadphase's rayTest(), plus a cast at the shape of
-    /// each found proxy.
+    /// Skips objects whose boxes the ray enters more than 0.02 units (plus rounding errors) beyond
+    /// callback.m_closestHitFraction. A ClosestRayResultCallback gets an equal result, but may keep another of
+    /// several hits at an equal fraction. For soft bodies, use rayTest() of their world. Returns the query's cost.
+    /// Cost: at most as this broadphase's rayTest(), plus a cast at the shape of each found proxy.
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 
@@ -202,31 +205,32 @@ public:
 
     /// Grows the proxy's box by `margin` [m] on all sides. A sweeping proxy keeps this margin on its whole path.
     /// Two proxies are a pair if their grown boxes overlap. Queries test the grown box, too. getAabb(), m_aabbMin and
-    /// m_aabbMax do not include the margin. Takes effect at once, as setAabb() with the present box. A new proxy has
-    /// no margin; refreshBroadphaseProxy() makes a new proxy. If only margins overlap, Bullet treats the pair like
-    /// any other: two dynamic bodies fall asleep only at the same time, and the narrow phase runs while one of them
-    /// is awake. Asserted: `margin` is finite and not negative; if it is not, nothing changes. Cost: as setAabb().
+    /// m_aabbMax do not include the margin. Queries see the margin at once; pairs change as after setAabb(). A new
+    /// proxy has no margin; refreshBroadphaseProxy() makes a new proxy. If only margins overlap, Bullet treats the
+    /// pair like any other: two dynamic bodies fall asleep only at the same time, and the narrow phase runs while one
+    /// of them is awake. Asserted: `margin` is finite and not negative; if it is not, nothing changes. Cost: as
+    /// setAabb().
     void setMargin(btBroadphaseProxy* proxy, btScalar margin, btDispatcher* dispatcher);
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
 
     /// From now on, the two proxies do not pair, whatever groups, masks and the filter decide (see Pairs::ignore()).
     /// An existing pair is removed at once. Its algorithm and contacts are freed at once; with PairOrder::canonical,
-    /// they are freed when the cache is next read. The pair stays ignored until stopIgnoringPair(), or until one of
-    /// the proxies is destroyed, also by refreshBroadphaseProxy(). Asserted: the proxies differ. Cost: O(1), plus
-    /// removing a pair from the cache; with deferred removal, a pass over all pairs.
+    /// later (see Removal in pair_cache.hpp). The pair stays ignored until stopIgnoringPair(), until
+    /// collisionChecksChanged() for one of the proxies (see there), or until one of them is destroyed, also by
+    /// refreshBroadphaseProxy(). Asserted: the proxies differ. Cost: O(1), plus removing a pair from the cache; with
+    /// deferred removal, a pass over all pairs.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     /// Ends ignorePair(). If the proxies overlap and the filter accepts them, adds their pair at once. Cost: as
     /// ignorePair().
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     [[nodiscard]] bool isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const;
 
-    /// Updates the ignored pairs of this proxy to the pairs that Bullet's dispatcher refuses. Ignores its pairs with
-    /// objects in the world that the proxy's object lists by setIgnoreCollisionCheck(). Stops ignoring the proxy's
-    /// other pairs, also pairs of ignorePair(). Exception: a pair stays ignored if the other object lists this
-    /// proxy's object. Call this function for the object with the list: when the list has changed (also by
-    /// removeConstraint(), or addConstraint() with disableCollisionsBetweenLinkedBodies), and when this object or a
-    /// listed object was added to the world. A list may contain destroyed objects. Cost: a pass over all proxies and
-    /// ignored pairs.
+    /// Updates the ignored pairs of this proxy. Ignores its pairs with objects in the world that the proxy's object
+    /// lists by setIgnoreCollisionCheck(). Stops ignoring the proxy's other pairs, also pairs of ignorePair().
+    /// Exception: a pair stays ignored if the other object lists this proxy's object. Call this function for the
+    /// object with the list: when the list has changed (also by removeConstraint(), or addConstraint() with
+    /// disableCollisionsBetweenLinkedBodies), and when this object or a listed object was added to the world. A list
+    /// may contain destroyed objects. Cost: a pass over all proxies and ignored pairs.
     void collisionChecksChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
     /// As above for many proxies, in one pass.
     void collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,
@@ -247,8 +251,8 @@ public:
     std::size_t shiftOrigin(const btVector3& shift);
 
     /// grid() is for queries that Bullet does not have. proxyOf(id) returns the proxy with this id; the proxy's
-    /// m_clientObject is the btCollisionObject. For an index, call proxyOf(grid().idAt(index)). idOf() takes
-    /// only proxies of this class. Asserted: the proxy is alive.
+    /// m_clientObject is the btCollisionObject. For an index, call proxyOf(grid().idAt(index)). Asserted in
+    /// proxyOf(): the proxy is alive. idOf() takes only live proxies of this class; asserted: not null.
     [[nodiscard]] const Grid<btScalar>& grid() const noexcept { return grid_; }
     [[nodiscard]] btBroadphaseProxy* proxyOf(ProxyId id) const;
     [[nodiscard]] static ProxyId idOf(const btBroadphaseProxy* proxy);

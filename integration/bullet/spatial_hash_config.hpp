@@ -25,10 +25,11 @@ struct SpatialHashConfig {
     GridConfig grid{};
 
     /// createProxy() and setAabb() of a ghost object add its pairs at once, as Bullet's character controller expects.
-    /// This needs a pair cache with an internal ghost pair callback. (A cache not passed as a PairCache counts as
-    /// having one.) An object that is created in a ghost's box, or jumps into it from outside, also pairs with the
-    /// ghost at once. Calls with a dispatcher, such as by a btCollisionWorld, read every client that may have pairs
-    /// as a btCollisionObject. Set false if clients have other types.
+    /// By default, and with a cache passed as a PairCache*, this needs an internal ghost pair callback. With a cache
+    /// passed as a btOverlappingPairCache*, it does not. An object also pairs with a ghost at once if it is created
+    /// in the ghost's box, or moves there so far that its new box does not touch its previous box. Calls with a
+    /// dispatcher, such as by a btCollisionWorld, cast the client of each proxy whose group and mask are not 0 to
+    /// btCollisionObject. Set false if clients have other types.
     bool eagerGhosts = true;
 
     /// createProxy() and setAabb() of a proxy in these groups add its pairs at once, too. For code without ghost
@@ -41,22 +42,23 @@ struct SpatialHashConfig {
     std::function<void(std::size_t count, std::size_t grain, LoopBody body)> parallelFor{};
 
     /// How to find the objects that a fast rigid body passes in a step. By default, bodies do not sweep. If
-    /// m_useContinuous is set, Bullet's box of such a body covers start, end and all between. With a sweep, this box
-    /// makes no pairs. Instead, the body gets pairs with exactly those objects that it touches along the path that
-    /// Bullet predicts. Queries test Bullet's box of the body, extended to the end of the path if m_useContinuous is
-    /// off. A body sweeps until its next setAabb(). If you move a body by hand, set its interpolation transform too.
-    /// Cost: up to two getAabb() calls for each moving body's shape.
+    /// m_useContinuous is set, Bullet's box of a dynamic rigid body covers start, end and all between. With a sweep,
+    /// this box makes no pairs if the body is fast. Instead, the body gets pairs with exactly those objects that it
+    /// touches along the path that Bullet predicts. Queries test Bullet's box of the body, extended to the end of the
+    /// path if m_useContinuous is off. setAabb() sets the path, from the body's world transform to its interpolation
+    /// transform, until the next setAabb(). If you move a body by hand, set both transforms. Cost: up to two
+    /// getAabb() calls for each moving body's shape.
     Sweep sweep = Sweep::none;
 
-    /// A body is fast if it moves in a step by more than `fastFrom` times the smallest edge of its box. Other bodies
-    /// do not sweep. Valid: 0 or more.
+    /// A body is fast if it moves in a step by more than `fastFrom` times the smallest edge of its shape's box at the
+    /// start of the step, grown by gContactBreakingThreshold. Other bodies do not sweep. Valid: 0 or more.
     btScalar fastFrom = 1;
 
     /// Set this to true if your overlap filter callback, or your pair cache other than PairCache, refuses at least
     /// the pairs that groups and masks refuse. Bullet's own caches do. If true, the callback or cache is asked only
-    /// about pairs that groups and masks accept. Proxies that may pair with no proxy, for example with a mask of 0,
-    /// cost nothing. If false, the callback or cache decides instead of groups and masks. It is asked about every
-    /// pair of overlapping proxies, and again about a refused pair when the box of one of its proxies changes.
+    /// about pairs that groups and masks accept. Other pairs, such as all pairs of a proxy with a mask of 0, are not
+    /// stored. If false, the callback or cache decides instead of groups and masks. It is asked about every pair of
+    /// overlapping proxies, and again about a refused pair when the box of one of its proxies changes.
     bool filterRefusesMore = false;
 
     /// If true, a query ends when process() of its callback returns false. Off by default: Bullet's broadphases

@@ -25,9 +25,9 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// bits in all of them.
 ///
 /// Shapes: btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btHeightfieldTerrainShape, any other btConcaveShape
-/// that lists its triangles, and compounds of these shapes.
-/// Returns an empty string, or a sentence about the fault. If there is a fault, appends nothing. Faults: a shape or
-/// child without triangles (a plane, a convex shape, a heightfield with a negative scaling), compounds nested more
+/// whose processAllTriangles() reports triangles (except btStaticPlaneShape), and compounds of these shapes.
+/// Returns an empty string, or a sentence about the fault. If there is a fault, appends nothing. Faults: a plane, a
+/// shape or child without triangles (a convex shape, a heightfield with a negative scaling), compounds nested more
 /// than 64 deep, or a compound that contains itself.
 /// Cost: O(triangles + children of compounds). If a shape occurs several times, each occurrence counts.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string appendTriangles(

@@ -10,8 +10,8 @@
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
-/// Counts of one step. If the effect in parentheses (world_effects.hpp) is off, the count is exactly 0, unless the
-/// program changes settings of a WorldConfigurator by hand.
+/// Counts of one step. If the effect in parentheses (world_effects.hpp) is off, the count is exactly 0, except for
+/// contacts between multibodies. This holds if the program does not change settings that a WorldConfigurator has set.
 struct WorldCost {
     int pairCount = 0;             ///< overlapping pairs (effect: pairs)
     int manifoldCount = 0;         ///< contact manifolds of the narrow phase (effect: pairs)
@@ -21,7 +21,7 @@ struct WorldCost {
     int sweptCount = 0;            ///< bodies that Bullet swept (effect: sweep)
     int sleepingCount = 0;         ///< dynamic bodies that sleep (effect: sleeping)
     int turningCount = 0;          ///< dynamic bodies with an angular velocity (effect: rotation)
-    int awakeCount = 0;            ///< dynamic bodies that are neither asleep nor disabled
+    int awakeCount = 0;            ///< dynamic bodies neither asleep nor in DISABLE_SIMULATION
 };
 
 /// Returns the counts of the last step. Call it between two steps. Cost: one pass over all objects and contacts.

@@ -25,11 +25,11 @@
 // off.
 //
 // A heap of 250 bodies takes 76 % fewer instructions per step without pairs, 58 % without response, 16 % without
-// rotation, 2 % without friction. A resting heap costs twice as much without sleeping. 2000 static bodies cost a
-// fifteenth less without restingBoxes.
+// rotation, 2 % without friction. A resting heap costs twice as much without sleeping. 2000 static bodies cost 7 %
+// less without restingBoxes.
 //
 // A frame   Between two steps, call apply() if declarations change, prepare() after adding a body, and release()
-//           before removing a body. Afterwards, call step(), or beforeStep() and stepSimulation().
+//           before removing a body. Afterwards, call step(), or stepSimulation(), optionally after beforeStep().
 // Settings  When an effect is declared again, apply() restores the former settings of bodies and the world; the
 //           destructor restores all. If your program sets a value while the effect is off, that value is restored
 //           instead. Exception: DISABLE_DEACTIVATION that your program sets while sleeping is off is removed.
@@ -37,12 +37,14 @@
 // Lifetime  The world, its broadphase, its pair cache and its former overlap filter must outlive the configurator. No
 //           other filter may call the configurator's filter. The configurator changes only objects in the world.
 // Removal   Call release() before you remove or delete an object. Without this call, a removed object keeps the
-//           overridden settings until it is in the world again and apply() or prepare() configures it. If the
+//           configurator's settings until it is in the world again and apply() or prepare() configures it. If the
 //           configurator is destroyed first, the object keeps them for ever. A new object at a deleted object's
 //           address is mistaken for the deleted object if no apply() ran after the deletion and before the new
-//           object was added, or if a setting of the new object equals an overridden setting.
-// Other     Soft bodies and multibodies solve their own contacts. Only the effects `pairs` and, in step(), `motion`
-//           change them.
+//           object was added. Even if apply() ran, the new object is mistaken if it already has a setting that the
+//           configurator gave the deleted object (such as friction 0), or if the configurator had changed only CCD
+//           settings of the deleted object.
+// Other     Soft bodies and multibodies solve their own contacts. Only `pairs`, `restingBoxes` and, in step(),
+//           WorldEffects::motion apply to such bodies. Without friction, multibodies too have one friction direction.
 // Memory    Used only for objects with overridden settings. After a removal without release(), memory is kept until
 //           an object is at that address again. Throws std::bad_alloc when memory runs out; repeat the call. The next
 //           step that does not throw completes the pairs.
@@ -124,7 +126,9 @@ public:
 
     /// Returns the number of bodies that Bullet will sweep in a step of `timeStep` [s]. If fastFrom is set and the
     /// number is 0, switches Bullet's sweeps off for this step. A body that becomes fast during the step is swept
-    /// from the next step on. Call this function before each step, or never. Cost: one pass over all objects.
+    /// from the next step on. This call is optional: without it, sweeps are not switched off. If you use it, call it
+    /// before each step, because sweeps that it switched off stay off until the next call. Cost: one pass over all
+    /// objects.
     int beforeStep(btScalar timeStep);
 
     /// Runs a step of `timeStep` [s]. If motion is declared, calls beforeStep() (only if fastFrom is set), then

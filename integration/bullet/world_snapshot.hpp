@@ -28,13 +28,13 @@
 // Added     restore() removes objects, joints and characters that were added after save(). It does not delete them.
 // Removed   If objects, joints or characters were removed after save(), pass them to restore(): it adds them again.
 //           If one is missing, restore() returns a fault that names it, and changes nothing. If you have added a
-//           removed object again yourself, pass it only if its shape has changed. If you do not pass it in that case,
-//           restore() takes it for another object at the same address, and returns a fault.
+//           removed object again yourself, you need to pass it only if its shape pointer has changed. If you do not
+//           pass it in that case, restore() takes it for another object at the same address, and returns a fault.
 // Ids       m_uniqueId and ProxyId are restored. Proxies added after restore() get the same ids as the proxies that
 //           were added after save().
-// Pointers  A proxy that exists from save() to restore() keeps its address. For other proxies, and after read(),
-//           call getBroadphaseHandle() again. Pointers to pairs, algorithms, manifolds and contact points are
-//           invalid after restore().
+// Pointers  A proxy that exists from save() to restore() keeps its address. For other proxies, and after restoring a
+//           snapshot that read() made, call getBroadphaseHandle() again. Pointers to pairs, algorithms, manifolds and
+//           contact points are invalid after restore().
 // One world Restore a snapshot only in the world that you passed to save() or read(). For another world, use write()
 //           and read().
 // Lifetime  Keep a shape alive while a snapshot contains an object with this shape. Do not change compound shapes
@@ -98,18 +98,20 @@ public:
     /// - Algorithms of removed pairs are not freed yet. In that case, save again after the next step.
     ///
     /// Numbers have the format of this processor, Bullet and compiler. Writer and reader must have an equal
-    /// SpatialHashConfig (except parallelFor), and equal settings of the solver and of collision detection, which are
-    /// not written. A world restored from bytes writes the same bytes again. Two equal worlds may write different
-    /// bytes, because joints contain padding.
+    /// SpatialHashConfig (except parallelFor). Their worlds' getSolverInfo(), getDispatchInfo() and flags, such as
+    /// setForceUpdateAllAabbs(), must be equal too: save() saves them, but write() does not write them. A world
+    /// restored from bytes writes the same bytes again. Two equal worlds may write different bytes, because joints
+    /// contain padding.
     /// Cost: O(saved state). If many objects touch, most bytes are contact points.
     [[nodiscard]] std::string write(std::vector<std::byte>& bytes) const;
 
     /// Reads bytes that write() made of a world with the same objects, such as a world built by the same calls. Finds
-    /// objects by unique ids of proxies, joints by type and bodies, characters by ghosts. If objects are not in this
-    /// world, pass them as `returned`, in the writer's order; the fault lists their ids in this order. Objects keep
-    /// their present shapes. Writer and reader must change compound shapes equally often. If another object has a
-    /// saved id by chance, read() takes this wrong object, unless its type or the number of changes of its compound
-    /// shape differs.
+    /// objects by unique ids of proxies, joints by type and bodies, characters by ghosts. If some are not in this
+    /// world, pass them as `returned`: objects and joints in the order of the writer's world at save(), characters in
+    /// any order. If objects are missing, the fault lists their unique ids in this order. Objects keep their present
+    /// shapes. A compound shape and its child compounds must have the same getUpdateRevision() as in the writer at
+    /// save(). If another object has a saved id by chance, read() takes this wrong object, unless its type or the
+    /// getUpdateRevision() of its compound shape differs.
     /// Returns an empty string, or a sentence about the fault. After a fault, nothing has changed. After success,
     /// call restore() with the same `returned`. With equal inputs, later steps give the same bits as the writer's
     /// steps. Damaged bytes are refused. Forged bytes may put objects anywhere, but do no other harm: authenticate

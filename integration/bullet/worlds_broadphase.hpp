@@ -173,8 +173,8 @@ public:
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
-    /// Shifts all worlds. Returns the number of rounded boxes. If memory runs out, only the first worlds are shifted.
-    /// Do not repeat the call: it would shift these worlds twice.
+    /// Shifts all worlds. Returns the number of boxes that had to be rounded: see Grid::shiftOrigin(). If memory runs
+    /// out, only the first worlds are shifted. Do not repeat the call: it would shift these worlds twice.
     std::size_t shiftOrigin(const btVector3& shift);
 
     [[nodiscard]] const WorldsConfig& config() const noexcept { return config_; }

@@ -8,9 +8,9 @@
 //           points have -w <= x <= w, -w <= y <= w, and z in the DepthRange. For a column-major `const float* matrix`
 //           (OpenGL, GLM, Vulkan), pass Eigen::Map<const Eigen::Matrix4f>(matrix) to frustumRegion<float>().
 // Units     metres in the world; normalised device coordinates from -1 to 1 on the screen
-// Bad data  If the matrix has a NaN or infinity, nothing is visible: frustumError() returns the reason. If the matrix
-//           is singular, only a line, a plane or nothing is visible. A transposed matrix gives a wrong view, but no
-//           error.
+// Bad data  If the matrix has a NaN, an infinity or a last row of zeros, or the rectangle is inverted or not finite,
+//           nothing is visible: frustumError() returns the reason. Other singular matrices and transposed matrices
+//           give a wrong view, but no error.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/convex_region.hpp>
@@ -66,9 +66,8 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Returns a sentence that explains why nothing is visible through the 4 x 4 matrix, or in `rectangle`. Returns an
-/// empty string if there is no fault. Does not detect wrong but valid matrices: test whether a known point is
-/// visible.
+/// Returns a sentence that explains why nothing is visible (see Bad data). Returns an empty string if there is no
+/// such fault. Does not detect wrong views: test whether a known point is visible.
 template <class Scalar>
 [[nodiscard, HASHPHASE_ALWAYS_INLINE]] inline std::string frustumError(
     const Eigen::Matrix<Scalar, 4, 4>& viewProjection,

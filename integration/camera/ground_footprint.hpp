@@ -37,8 +37,7 @@ struct HeightRange {
     UpAxis up = UpAxis::y;
 };
 
-/// A convex polygon on the map, and the vertical prism over the polygon between two heights. (The paper's drag box
-/// and top-down camera use two corners and one height instead.)
+/// A convex polygon on the map, and the vertical prism over the polygon between two heights.
 template <class Scalar>
 class HASHPHASE_CAMERA_TEMPLATE_EXPORT GroundFootprint {
 public:

@@ -3,15 +3,17 @@
 
 // Finds the proxies that a camera sees: proxies whose boxes touch the frustum, or another convex volume.
 //
-// Exact     The set contains every proxy whose box touches the volume. The set may also contain other proxies: near
-//           an edge of the volume, within the margin, or from an earlier frame. overdraw() counts these other
-//           proxies.
+// Exact     The set contains every proxy that the filter accepts and whose box touches the volume. The set may also
+//           contain other proxies: near an edge of the volume, within the margin, or from an earlier frame.
+//           overdraw() counts these other proxies.
 // Frame     Call look() once a frame, with the current frustum.
-// Threads   look() queries the grid. During look(), no other thread may use this object.
+// Threads   During look(), other threads may query the grid, but must not change the grid or use this object.
 // Units     metres
-// Bad data  The set is empty if the volume has a NaN, or contains no point. frustumError() returns the reason.
+// Bad data  The set is empty if the volume has a NaN, or contains no point. frustumError() explains faults of a
+//           camera's matrix.
 // Memory    One bit for each index up to the highest visible index. Allocates only if a frame needs more than before.
-//           After 256 consecutive searches that need less than an eighth of the memory, the memory is freed.
+//           After 256 consecutive searches that need less than an eighth of the memory, look() frees the unused
+//           memory.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/peak_watch.hpp>
@@ -54,16 +56,17 @@ public:
     /// proxy was added or removed since (Grid::populationNumber()), and no box can have moved into the frustum. If
     /// the frustum has Containment::inside, look() always searches. Touch::byPlanes is faster than Touch::exact.
     ///
-    /// `moved` [m] is the largest distance that a corner of a box may have moved since the last call. Pass infinity
-    /// if the distance is unknown, or the filter has changed. Returns the query's cost: zeros if the set was kept.
-    /// Asserted: neither the filter nor visit() of forEach() calls look(). Cost: Grid::visit() of the volume, which
-    /// tests only boxes in cells at the volume's surface.
+    /// `moved` [m] is the largest distance that a corner of a box may have moved since the last look() or
+    /// noteMoves(). Pass infinity if the distance is unknown, or the filter has changed. Returns the query's cost:
+    /// zeros if the set was kept. Asserted: neither the filter nor visit() of forEach() calls look(). Cost:
+    /// Grid::visit() of the volume, which tests only boxes in cells at the volume's surface.
     QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
     QueryCost look(const Grid<Scalar>& grid, const Frustum& frustum, ProxyFilter filter,
                    Scalar moved = std::numeric_limits<Scalar>::infinity());
 
-    /// Call it in a frame in which you do not call look(). `moved` [m] is as in look().
+    /// Adds `moved` [m] (as in look()) to the movement since the last search. Call it in a frame without look(), or
+    /// include that frame's movement in `moved` of the next look().
     void noteMoves(Scalar moved) noexcept;
 
     /// Removes the proxy with this index from the set. Call it after you remove the proxy from the grid, if you read

@@ -10,7 +10,7 @@
 // Transport  Your program sends the parcels, as for RankGrid.
 // Frame      After RankGrid::finish() and before the next change (asserted), all ranks call pack(), answer() and
 //            finish(), even ranks that have no question.
-// Result     Answers do not depend on the number of ranks.
+// Result     Answers, except FoundObject::home, do not depend on the number of ranks.
 // Failure    answer() and finish() throw RankError if a parcel is invalid.
 // Bad data   A question with a NaN finds nothing.
 
@@ -35,7 +35,8 @@ struct Question {
     Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< start of a ray, centre of a sphere [m]
     Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< end of a ray [m]
     Scalar radius = 0;                               ///< of a sphere [m]
-    std::uint32_t most = ~std::uint32_t{0};  ///< maximum number of objects; smallest keys win
+    /// Maximum number of objects. The smallest keys win, then the smallest ids.
+    std::uint32_t most = ~std::uint32_t{0};
 
     /// Finds the objects that touch a box (BoxRegion).
     [[nodiscard]] static Question box(const Aabb<Scalar>& box,

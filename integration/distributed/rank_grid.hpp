@@ -22,7 +22,7 @@
 //            finish(), this grid is unusable.
 // Threads    Several threads may query grid(). During any other call, no other thread may use this object.
 // Misuse     These fail an assertion and have no effect: pack() and finish() in the wrong order, changes between
-//            pack() and finish(), stale ids, and ghosts passed as objects.
+//            pack() and finish(), and changes of stale ids or ghosts.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/core/byte_stream.hpp>
@@ -64,7 +64,7 @@ struct RankGridConfig {
     friend bool operator==(const RankGridConfig&, const RankGridConfig&) = default;
 };
 
-/// Bytes from one rank to another. Valid until the next pack().
+/// Bytes from one rank to another.
 struct Parcel {
     std::uint32_t rank = 0;  ///< the receiver of a parcel to send; the sender of a received parcel
     std::span<const std::byte> bytes;
@@ -133,7 +133,7 @@ public:
 
     /// Returns the payload of an object that this rank owns, for writing. The span is valid until the next add() or
     /// finish(). pack() sends the bytes to ghosts and to a new home. Call payload() again in each frame in which you
-    /// write. Otherwise, pack() may not send the bytes. Cost: O(1).
+    /// write. Otherwise, pack() might not send the bytes. Cost: O(1).
     [[nodiscard]] std::span<std::byte> payload(ProxyId id);
 
     /// Returns the payload of an object or ghost, for reading. finish() updates the payloads of ghosts. Returns an
@@ -145,7 +145,7 @@ public:
         return grid_.contains(id) && (marks_[id.index] & kOwned) != 0;
     }
 
-    /// Returns the home of an object, or of a ghost's object. Asserted: the id is valid in this grid.
+    /// Returns the rank that owns the object, or the ghost's object. Asserted: the id is valid in this grid.
     [[nodiscard]] std::uint32_t homeOf(ProxyId id) const;
 
     /// Returns the GlobalId of an object or ghost. Until the next finish(), also accepts proxies that the last frame
@@ -186,8 +186,8 @@ public:
     /// next pack().
     void setPartition(const Partition<Scalar>& partition);
 
-    /// Ends the changes of this frame. Returns the parcels for other ranks, sorted by receiver. Cost: O(n) for n
-    /// objects that were added, removed, or changed at the region's border.
+    /// Ends the changes of this frame. Returns the parcels for other ranks, sorted by receiver, valid until the next
+    /// pack(). Cost: O(n) for n objects that were added, removed, or changed at the region's border.
     std::span<const Parcel> pack();
 
     /// Ends the frame. Pass all parcels from other ranks for this frame, in any order. Throws RankError. Cost: as

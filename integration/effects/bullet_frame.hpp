@@ -23,9 +23,9 @@
 //     all others   none: Observers query                  nothing
 //                  SpatialHashBroadphase::grid()
 //
-// Observers  Observers identify objects by ProxyId, and index data by ProxyId::index. When you remove an object, call
-//            Observers::forget(), because a new object may get its index. After an origin shift, move zones, view and
-//            interest yourself.
+// Observers  Observers (observers.hpp) identify objects by ProxyId, and index data by ProxyId::index. When you remove
+//            an object, call Observers::forget(), because a new object may get its index. After an origin shift, pass
+//            shifted values to Zones::set(), setView() and setInterest().
 // Ignored    ResponseEffect::restitution: each body has its own restitution (WorldEffects::restitution sets all).
 //            SweepEffect::mode: set SpatialHashConfig::sweep instead. SleepingEffect::framesBeforeSleep: bodies fall
 //            asleep after gDeactivationTime, 2 s.

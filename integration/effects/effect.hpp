@@ -25,8 +25,8 @@ enum class Effect : std::uint8_t {
     picking,       ///< finds bodies under the pointer
     boxSelection,  ///< finds bodies in a dragged rectangle
     culling,       ///< finds bodies that a camera sees
-    proximity,     ///< agents take the rarest colour around them
-    zones,         ///< finds proxies in zones of interest
+    proximity,     ///< agents (proxies) take the rarest colour around them
+    zones,         ///< finds proxies in zones
     radar,         ///< counts proxies in coarse cells
 };
 

@@ -7,12 +7,17 @@
 // Undeclared  An undeclared effect has no phase, no table and no cost. A call that needs an undeclared effect throws
 //             UndeclaredEffect.
 // Frame       Set the view, interest or zones if they changed, then call observe() once.
-// Exact       The result of an effect depends only on the boxes and the effect's settings.
-// Late        An effect may be declared to run only in every n-th frame. In other frames, its last results stay, and
-//             cost() counts them as late.
-// Threads     Calls query the grid. During a call, no other thread may use this object.
+// Exact       An effect's results depend only on the scenes that you pass, and on the effect's settings, view,
+//             interest, zones or colours. Other declared effects do not change the results.
+// Late        An effect may be declared to run only in every n-th frame, for all objects or for far objects. In other
+//             frames, the last visible set, colours, zone occupants or counts stay, but late zones have no events.
+//             cost() counts late results.
+// Threads     Calls query the grid: other threads may also query the grid, but not change it. During a call, no other
+//             thread may use this object.
 // Removed     Call forget() for each removed proxy. (Simulation calls it itself.)
-// Failure     If observe() throws std::bad_alloc, results of that frame are missing. The next frames work.
+// Failure     If observe() throws std::bad_alloc, the visible set may be incomplete, colours may be old, and
+//             radarCounts() may be invalid. zoneEvents() has all events or none. The next frames work, and report
+//             missed events.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -71,7 +76,7 @@ public:
     using Point = Vector3<Scalar>;
     using Scene = ObservedScene<Scalar>;
 
-    /// Throws std::invalid_argument with effectsError(effects), if not empty.
+    /// Throws std::invalid_argument with the string effectsError(effects), if this string is not empty.
     explicit Observers(const SceneEffects& effects = {});
     ~Observers();
     Observers(const Observers&) = delete;
@@ -111,8 +116,9 @@ public:
     /// Forgets a removed proxy, so that a new proxy with the same index does not inherit its visibility and colour.
     void forget(std::uint32_t index) noexcept;
 
-    /// Call it before you observe another grid that has equal indices but other generations. Proxies in a zone will
-    /// enter the zone again, and no event reports that they left.
+    /// Forgets the occupants of all zones; keeps visibility and colours. Call it before you observe another grid that
+    /// has equal indices but other generations. Proxies in a zone will enter the zone again, and no event reports
+    /// that they left.
     void forgetProxies() noexcept;
 
     /// Calls `watch` with the effect's name after each phase, for a profiler. To stop the calls, pass an empty

@@ -36,9 +36,9 @@ enum class SceneCounter : std::uint8_t {
     groundsAsked,     ///< bodies for which the ground was queried
     trianglesTested,  ///< triangles tested in ground queries
     // The grid and its pairs.
-    proxiesHashed,    ///< boxes set in the grid
+    proxiesHashed,    ///< boxes passed to Grid::move()
     entriesFiled,     ///< entries written into the grid's tables
-    cellRowsVisited,  ///< rows of cells (for rays: blocks of boxes) read by all queries
+    cellRowsVisited,  ///< rows of cells (for rays: blocks of boxes) read; includes cellRowsCulled
     boxesTested,      ///< boxes tested for pairs
     pairsWatched,     ///< existing pairs tested for overlap
     couplesWatched [[deprecated("pairsWatched")]] = pairsWatched,
@@ -60,7 +60,7 @@ enum class SceneCounter : std::uint8_t {
     cullingBoxesTested,  ///< boxes tested against the view
     framesCulledLate,    ///< 1 if restingCameraFrames skipped the search, so the set is old
     // Proximity.
-    agentsScanned,     ///< agents that searched and, if turns is 1, their possible neighbours
+    agentsScanned,     ///< agents that searched or, if turns is 1, may be near such agents
     neighboursTested,  ///< tested distances between agents
     agentsLate,        ///< agents that did not search: far, or not their turn
     // Zones.
@@ -81,7 +81,7 @@ enum class SceneTable : std::uint8_t {
     sleepers,    ///< sleep states of bodies, and their numbers of slow frames
     ground,      ///< triangles and their grid
     walkers,     ///< positions at which the ground is queried, and results
-    proxies,     ///< ids of the bodies in the grid
+    proxies,     ///< ids of the bodies' proxies
     grid,        ///< boxes, and the tables of cells
     pairs,       ///< pairs, and their changes
     contacts,    ///< list of present pairs

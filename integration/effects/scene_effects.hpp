@@ -38,7 +38,8 @@ struct MotionEffect {
                         Vector3<double>::Constant(std::numeric_limits<double>::infinity())};
 };
 
-/// Puts moved bodies on the ground, if there is ground below them. Needs motion.
+/// In each frame, puts every awake body on the ground below it, from any height. Bodies without ground below them are
+/// not changed. Needs motion.
 struct TerrainEffect {
     UpAxis up =
         UpAxis::y;  ///< declaring this effect with another axis removes all triangles of the ground
@@ -47,8 +48,8 @@ struct TerrainEffect {
 /// Finds births and deaths of overlapping pairs (pairs.hpp).
 struct PairsEffect {};
 
-/// Touching spheres that approach each other exchange their velocities along the line between their centres. Needs
-/// pairs and motion.
+/// Touching spheres that approach each other bounce. If `restitution` is 1, they exchange their velocities along the
+/// line between their centres. Needs pairs and motion.
 struct ResponseEffect {
     double restitution = 1;  ///< from 0 (no bounce) to 1 (no loss)
 };
@@ -66,7 +67,7 @@ struct SweepEffect {
 struct SleepingEffect {
     /// Bodies farther than this from the interest sleep [m].
     double interestRadius = std::numeric_limits<double>::infinity();
-    double slowBelow = 0;                  ///< slower bodies sleep after framesBeforeSleep [m/s]
+    double slowBelow = 0;                  ///< [m/s]; slower bodies sleep after framesBeforeSleep
     std::uint32_t framesBeforeSleep = 30;  ///< number of consecutive frames below slowBelow
 };
 
@@ -92,7 +93,7 @@ struct CullingEffect {
     std::uint32_t restingCameraFrames = 1;
 };
 
-/// Agents take the rarest colour around them: the paper's routine (RarestColour).
+/// Agents (proxies that take part) take the rarest colour around them (ai/rarest_colour.hpp).
 struct ProximityEffect {
     double radius = 10;             ///< [m]
     std::uint32_t colourCount = 4;  ///< 1 to RadiusSearch::kMostGroups
@@ -105,7 +106,7 @@ struct ProximityEffect {
     std::uint32_t turns = 1;
 };
 
-/// Finds the proxies in zones of interest (ai/zones.hpp).
+/// Finds the proxies in zones that you add (ai/zones.hpp).
 struct ZonesEffect {
     /// Zones farther than this from the point of interest are far [m].
     double interestRadius = std::numeric_limits<double>::infinity();

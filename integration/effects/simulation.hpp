@@ -71,7 +71,7 @@ class HASHPHASE_EFFECTS_TEMPLATE_EXPORT Simulation {
 public:
     using Point = Vector3<Scalar>;
 
-    /// Throws std::invalid_argument with simulationError(effects), if not empty.
+    /// Throws std::invalid_argument with the string simulationError(effects), if this string is not empty.
     explicit Simulation(const SceneEffects& effects = {});
     ~Simulation();
     Simulation(const Simulation&) = delete;
@@ -155,10 +155,11 @@ public:
     void watchPhases(std::function<void(std::string_view)> watch);
 
     /// Lets two bodies bounce if they touch and approach each other. Use it for pairs from another broadphase.
-    /// Returns whether they bounced. If a body takes no part in response, it never bounces. To replace the response
-    /// effect, with results equal to the last bit, call collide() after advance() for all touching pairs, sorted by
-    /// the bodies' indices. `restitution`: see ResponseEffect. Needs Effect::motion. Asserted: the bodies differ.
-    /// Cost: O(1).
+    /// Returns whether they bounced. If a body takes no part in response, it never bounces. The order of `first` and
+    /// `second` does not matter. To replace the response effect, call collide() after advance() for all touching
+    /// pairs, sorted by the lower index of the two bodies, then by the higher index. Results are equal to the last
+    /// bit if no body sweeps or falls asleep. `restitution`: see ResponseEffect. Needs Effect::motion. Asserted: the
+    /// bodies differ. Cost: O(1).
     bool collide(BodyId first, BodyId second, double restitution = 1);
 
     /// Births and deaths of pairs in the last frame. Valid until the next frame. Needs Effect::pairs.

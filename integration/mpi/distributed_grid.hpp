@@ -6,7 +6,7 @@
 // Objects   See rank_grid.hpp for objects, ghosts, payloads, pairs, and when changes are visible. RankChanges lists
 //           objects that have moved between ranks. Your program must send data of these objects that is not in the
 //           payload.
-// Balance   If one rank has too much work, update() cuts space again.
+// Balance   Each rank has a region of space. If one rank has too much work, update() cuts space into new regions.
 // Together  These calls are collective: constructor, update() (or begin() and end()), ask(), sendHome(), pairSum(),
 //           destructor. All ranks must make these calls in the same order. All other calls are local.
 // Failure   If one rank fails, collective calls on all ranks throw RankError, which names the rank and the reason: an
@@ -15,8 +15,8 @@
 //           again. If a process dies, the MPI library ends the program.
 // Misuse    If ranks make collective calls in different orders, or call ask() or pairSum() after a change, all ranks
 //           throw RankError. Destroy the grid before MPI_Finalize(), and not between begin() and end().
-// Threads   Call all members from the thread that may call MPI (MPI_THREAD_FUNNELED). Several threads may query
-//           here().grid().
+// Threads   While no call changes the grid, any thread may query here().grid(). Make all other calls from the thread
+//           that may call MPI (MPI_THREAD_FUNNELED).
 // Machines  All machines must be of one kind: messages contain numbers in machine format.
 
 #include <integration/distributed/contributions.hpp>
@@ -43,7 +43,8 @@ struct DistributedConfig {
 
     /// update() cuts space again if the largest load of a rank exceeds this factor times the mean load. Because cuts
     /// have errors, the factor used is at least 1.04 up to 128 ranks, 1.13 for 1,024 ranks, and 1.5 for 16,384 ranks.
-    /// Valid: 1 or more. If infinite, only the first frame and balanceNow() cut space.
+    /// Valid: 1 or more. If infinite, space is cut only by balanceNow() and, if you pass no partition, by the first
+    /// update().
     double rebalanceAbove = 1.1;
 
     /// Longest time to wait for another rank [s]. If 0, calls wait without limit. Choose more time than any rank
@@ -72,9 +73,9 @@ public:
     /// Duplicates `communicator`. The first update() cuts space so that the objects are balanced. Throws RankError on
     /// all ranks if configurations differ, and std::invalid_argument if the configuration is invalid.
     explicit DistributedGrid(MPI_Comm communicator, const DistributedConfig& config = {});
-    /// Begins with a partition, such as from an earlier run. All ranks must pass equal partitions. Objects that you
-    /// add on their home rank need no transfer. Also throws RankError if partitions differ, or have more or
-    /// fewer ranks than the communicator.
+    /// Begins with a partition, such as from an earlier run. The first update() keeps this partition. All ranks must
+    /// pass equal partitions. Objects that you add on their home rank need no transfer. Also throws RankError if
+    /// partitions differ, or have more or fewer ranks than the communicator.
     DistributedGrid(MPI_Comm communicator, const Partition<Scalar>& partition,
                     const DistributedConfig& config = {});
     DistributedGrid(const DistributedGrid&) = delete;
@@ -118,8 +119,8 @@ public:
 
     // --- The whole -------------------------------------------------------------------------------
 
-    /// Sends bytes about ghosts, such as forces, to the homes of the objects. Call it after update(), before objects
-    /// move. Returns other ranks' contributions to objects of this rank, sorted by sender, valid until the next
+    /// Sends bytes about ghosts, such as forces, to the homes of the objects. Call it after update(), before the next
+    /// change. Returns other ranks' contributions to objects of this rank, sorted by sender, valid until the next
     /// sendHome(), ask() or begin(). Cost: a message to each receiving rank, and a barrier.
     std::span<const Contribution> sendHome(std::span<const Contribution> forGhosts);
 

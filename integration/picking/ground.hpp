@@ -5,8 +5,9 @@
 //
 // Units     metres
 // Bad data  Results are empty if the ray is empty, a height is NaN, or `low` is above `high`.
-// Source    In 2D grids, the paper picks at the point at which the ray meets the ground. This misses tall objects in
-//           front of the point. Instead, query with clipToHeights(): the part of the ray between the heights.
+// Source    Hastings, Mesit and Guha pick at the point at which the ray meets the ground (in 2D grids). This misses
+//           tall objects in front of the point. Instead, query with clipToHeights(): the part of the ray between the
+//           heights.
 
 #include <broadphase/regions.hpp>
 #include <integration/camera/camera.hpp>

@@ -35,7 +35,7 @@ class HASHPHASE_TERRAIN_TEMPLATE_EXPORT ChangedGround {
 public:
     using Box = Aabb<Scalar>;
 
-    /// Allocates `mostBoxes` boxes, at least 2. A box has 24 bytes, or 48 in double precision.
+    /// Allocates max(`mostBoxes`, 2) boxes. A box has 24 bytes, or 48 in double precision.
     explicit ChangedGround(Terrain<Scalar>& terrain, std::size_t mostBoxes = 16384);
     ~ChangedGround();
     ChangedGround(const ChangedGround&) = delete;

@@ -10,12 +10,13 @@
 //           used again. Otherwise, some may stay free. Free numbers and refused triangles have NaN corners, a zero
 //           normal and the null proxy.
 // Grid      The grid may contain other proxies, which may change. This costs time, but does not change results.
-//           Removed triangles have no effect on results.
+//           Removed triangles are never found.
 // Exact     A point on an edge or corner belongs to all triangles there, so a closed surface has no holes. Heights
 //           are computed in double precision.
 // Seams     Rounding may leave gaps between meshes with different transforms. A point in such a gap belongs to the
-//           highest triangle within seamTolerance(). If another triangle is exactly below the point, and has about
-//           the same height or is higher, the point belongs to that triangle instead.
+//           highest triangle that is, seen from above, at most seamTolerance() away. If a second triangle is exactly
+//           below the point (ground under a bridge, for example), the point belongs to the higher triangle, or to the
+//           second if both are about equally high.
 // Units     metres. Heights are coordinates along the up axis.
 // Threads   Several threads may run queries (const functions) at once. During other calls, no other thread may use
 //           the terrain, its grid, or its ChangedGround.
@@ -23,8 +24,10 @@
 //           memory runs out during a change, the terrain stays unchanged.
 // Bad data  add() and replace() refuse and list triangles with a bad corner. Queries find no ground for bad points
 //           and radii.
-// Misuse    These fail an assertion and change nothing: a number of corners that is no multiple of 3, spans of
-//           unequal lengths, numbers that have no triangle, bad tolerances, more than 2^32 - 2 triangles.
+// Misuse    These fail an assertion and change nothing: a number of corners or indices that is no multiple of 3, bad
+//           tolerances, more than 2^32 - 2 triangles, numbers for replace() and remove() that are free or not below
+//           size(). Asserted (otherwise undefined behaviour): spans have equal lengths; numbers for corners(),
+//           normal() and proxy() are below size().
 // Source    The object-terrain test of Hastings, Mesit and Guha for flat ground, extended to slopes and edges.
 
 #include <broadphase/core/compiler.hpp>
@@ -94,8 +97,8 @@ public:
     /// Adds triangles, three corners [m] each, in either orientation. Refuses triangles with a coordinate that is
     /// NaN, infinite or beyond kFarthest. Vertical triangles and triangles of zero area carry spheres, but have no
     /// height: surfaceBelow() does not find them. The triangles get the lowest consecutive free numbers. If no run of
-    /// free numbers is long enough, size() grows. Allocates nothing if enough triangles were removed before. Cost:
-    /// O(triangles) amortised, and O(runs of free numbers).
+    /// free numbers is long enough, size() grows. If size() stays constant because free numbers are used again, add()
+    /// soon allocates nothing except `refused`. Cost: O(given triangles) amortised, and O(runs of free numbers).
     AddedTriangles add(std::span<const Point> corners);
 
     /// As the other add(), but each triangle has three indices into `vertices`. Also refuses triangles with an index
@@ -105,8 +108,9 @@ public:
     /// Replaces the corners of the triangles with numbers `first`, `first` + 1 and so on. Refuses triangles as add()
     /// does. Triangles keep their numbers. A triangle keeps its proxy if it was accepted before and is accepted now.
     /// Unchanged triangles cost no update of the grid, and ChangedGround does not record them. To change how many
-    /// triangles there are, call remove() and add(). Allocates only if a replaced triangle was refused before, or is
-    /// refused now. Asserted: none of the numbers is free. Cost: O(given triangles).
+    /// triangles there are, call remove() and add(). Allocates if a replaced triangle was refused before, or is
+    /// refused now; otherwise rarely, and a few kB at most. Asserted: none of the numbers is free. Cost: O(given
+    /// triangles).
     AddedTriangles replace(std::uint32_t first, std::span<const Point> corners);
     AddedTriangles replace(std::uint32_t first, std::span<const Point> vertices,
                            std::span<const std::uint32_t> indices);
@@ -131,7 +135,8 @@ public:
     /// The corners [m] of a triangle, in the given order; NaN for a refused triangle.
     [[nodiscard]] Corners corners(std::uint32_t triangle) const;
 
-    /// Unit normal of the upper side; zero if the triangle is vertical or refused, or is too thin.
+    /// Unit normal of the upper side; zero if the triangle is vertical or refused, or its area is zero or so small
+    /// that rounding hides the normal.
     [[nodiscard]] Point normal(std::uint32_t triangle) const;
 
     /// The triangle's proxy; null for a refused triangle.
@@ -146,22 +151,22 @@ public:
 
     // --- Seams -----------------------------------------------------------------------------------
 
-    /// Sets the tolerance [m]: a point outside all triangles belongs to a triangle that is at most this far away. If
-    /// 0, such points belong to no triangle. If std::nullopt, the default, the tolerance is automatic: see
-    /// seamTolerance(). Set a tolerance if your corners were computed from larger numbers than seamTolerance()
-    /// assumes, or if the tolerance must not depend on the present triangles. Gaps up to twice the tolerance are
-    /// closed. Ledges extend outwards by the tolerance. clear() keeps the setting. Asserted: 0 to kFarthest; if not,
-    /// nothing changes. Cost: O(1).
+    /// Sets the tolerance [m]: the largest distance, seen from above, between a point in a gap and its triangle (see
+    /// Seams at the top). If 0, gaps stay open. If std::nullopt, the default, the tolerance is automatic: see
+    /// seamTolerance(). Set a tolerance if you computed the corners from larger numbers than the two lengths in
+    /// seamTolerance() (for example, far from the origin), or if the tolerance must not depend on the present
+    /// triangles. Gaps up to twice the tolerance are closed. Ledges extend outwards by the tolerance. clear() keeps
+    /// the setting. Asserted: 0 to kFarthest; if not, nothing changes. Cost: O(1).
     void setSeamTolerance(std::optional<Scalar> tolerance);
 
     /// Returns the tolerance [m] at the point: the tolerance that you set, or the automatic tolerance, by which
     /// rounding may move a nearby edge. The automatic tolerance is 8 epsilon of Scalar times the sum of two lengths.
-    /// The first length is the larger absolute value of the point's two coordinates along the ground. The second
-    /// length depends on the chunks (the triangles of one add() or replace()) that have triangles left. The size of a
-    /// chunk is its largest extent plus its largest absolute height. The second length is the size of the largest
-    /// chunk, rounded up to a power of two, at most 16 km. Shifts of the origin do not lower the tolerance. For
-    /// chunks of 32 m in single precision, the tolerance is 0.05 mm near the origin, and 1 mm at 1 km; in double
-    /// precision 2 pm at 1 km.
+    /// A chunk is the triangles of one add() or replace(), and is present until all are removed or replaced. The
+    /// first length is the largest absolute value of the point's two coordinates along the ground, with the present
+    /// origin and with each earlier origin since a present chunk was added. The second length is the size of the largest
+    /// present chunk, rounded up to a power of two, at most 16 km. The size of a chunk is its largest extent plus its
+    /// largest absolute height when it was added. For chunks of size 64 m in single precision, the tolerance is 0.06
+    /// mm at the origin, and 1 mm at 1 km; in double precision 2 pm at 1 km.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
         return setTolerance_
                    ? *setTolerance_
@@ -187,8 +192,8 @@ public:
                                       QueryCost* cost = nullptr) const;
 
     /// As surfaceBelow(), for many points: found[i] belongs to points[i]. Fastest if neighbouring points are adjacent
-    /// in `points`. Returns the cost. Cost: at most as surfaceBelow() for each point. Memory: 10 kB of stack, or 300
-    /// kB for 1,024 or more points.
+    /// in `points`. Returns the cost. Cost: at most as surfaceBelow() for each point. Memory: 10 kB of stack on each
+    /// thread; for 1,024 or more points, 300 kB of stack on the calling thread.
     QueryCost surfacesBelow(std::span<const Point> points, std::span<Found> found,
                             ParallelFor parallelFor = serialFor) const;
 
