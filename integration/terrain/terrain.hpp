@@ -163,10 +163,10 @@ public:
     /// rounding may move a nearby edge. The automatic tolerance is 8 epsilon of Scalar times the sum of two lengths.
     /// A chunk is the triangles of one add() or replace(), and is present until all are removed or replaced. The
     /// first length is the largest absolute value of the point's two coordinates along the ground, with the present
-    /// origin and with each earlier origin since a present chunk was added. The second length is the size of the largest
-    /// present chunk, rounded up to a power of two, at most 16 km. The size of a chunk is its largest extent plus its
-    /// largest absolute height when it was added. For chunks of size 64 m in single precision, the tolerance is 0.06
-    /// mm at the origin, and 1 mm at 1 km; in double precision 2 pm at 1 km.
+    /// origin and with each earlier origin since a present chunk was added. The second length is the size of the
+    /// largest present chunk, rounded up to a power of two, at most 16 km. The size of a chunk is its largest extent
+    /// plus its largest absolute height when it was added. For chunks of size 64 m in single precision, the tolerance
+    /// is 0.06 mm at the origin, and 1 mm at 1 km; in double precision 2 pm at 1 km.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
         return setTolerance_
                    ? *setTolerance_

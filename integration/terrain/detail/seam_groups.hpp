@@ -30,7 +30,7 @@ public:
     /// Makes room for a group, which add() takes.
     void reserveOne() {
         ensureCapacity(groups_, std::min(groups_.size() + 1, kMost));
-        ensureCapacity(shifts_, groups_.capacity());
+        ensureCapacity(origins_, groups_.capacity());
     }
 
     /// Counts triangles of a mesh of this extent [m]. Returns their group.
@@ -70,7 +70,7 @@ public:
             if (i + 1 == kMost) {  // of any shifts: none is farther than this
                 group.extent += std::max(std::abs(x), std::abs(z));
             } else {
-                group.shift = {group.shift.x + x, group.shift.z + z};
+                group.origins.shift(x, z);
             }
         }
         summarise();
@@ -84,33 +84,45 @@ public:
     /// The largest extent of a mesh with a triangle left [m]; 0 without triangles.
     [[nodiscard]] Scalar extent() const noexcept { return extent_; }
 
-    /// The larger coordinate of the point, now or when a triangle came that is left [m].
+    /// The larger coordinate of the point [m], of all origins since a triangle came that is left.
     [[nodiscard]] Scalar farthest(Scalar x, Scalar z) const noexcept {
         Scalar result = std::max(std::abs(x), std::abs(z));
-        for (const Shift& shift : shifts_) {
-            result = std::max({result, std::abs(x + shift.x), std::abs(z + shift.z)});
+        for (const Origins& origins : origins_) {
+            result = std::max({result, std::abs(x + origins.lowX), std::abs(x + origins.highX),
+                               std::abs(z + origins.lowZ), std::abs(z + origins.highZ)});
         }
         return result;
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return groups_.size(); }
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
-        return groups_.capacity() * sizeof(Group) + shifts_.capacity() * sizeof(Shift);
+        return groups_.capacity() * sizeof(Group) + origins_.capacity() * sizeof(Origins);
     }
 
 private:
-    struct Shift {
-        Scalar x = 0;
-        Scalar z = 0;
-        friend bool operator==(const Shift&, const Shift&) = default;
+    /// By how much coordinates were larger than they are, at each origin since the triangles came: a shift
+    /// rounds as coarsely as its coordinates are large, and a later one back does not undo it.
+    struct Origins {
+        Scalar lowX = 0;  // 0 or less: the present origin is one of them
+        Scalar lowZ = 0;
+        Scalar highX = 0;
+        Scalar highZ = 0;
+
+        void shift(Scalar x, Scalar z) noexcept {
+            lowX = std::min(lowX + x, Scalar(0));
+            lowZ = std::min(lowZ + z, Scalar(0));
+            highX = std::max(highX + x, Scalar(0));
+            highZ = std::max(highZ + z, Scalar(0));
+        }
+        friend bool operator==(const Origins&, const Origins&) = default;
     };
     struct Group {
         Scalar extent;
-        Shift shift;          // of the origin since the triangles came
+        Origins origins;
         std::uint32_t count;  // of triangles; 0 where the place is free
 
         [[nodiscard]] bool isLike(const Group& other) const noexcept {
-            return count > 0 && extent == other.extent && shift == other.shift;
+            return count > 0 && extent == other.extent && origins == other.origins;
         }
     };
 
@@ -123,21 +135,21 @@ private:
     // What is asked of all groups, at hand.
     void summarise() noexcept {
         extent_ = 0;
-        shifts_.clear();
+        origins_.clear();
         for (const Group& group : groups_) {
             if (group.count == 0) {
                 continue;
             }
             extent_ = std::max(extent_, group.extent);
-            if (group.shift != Shift{} &&
-                std::find(shifts_.begin(), shifts_.end(), group.shift) == shifts_.end()) {
-                shifts_.push_back(group.shift);
+            if (group.origins != Origins{} &&
+                std::find(origins_.begin(), origins_.end(), group.origins) == origins_.end()) {
+                origins_.push_back(group.origins);
             }
         }
     }
 
     std::vector<Group> groups_;
-    std::vector<Shift> shifts_;  // of the groups, those that are not 0, each once
+    std::vector<Origins> origins_;  // of the groups, those that are not 0, each once
     Scalar extent_ = 0;
 };
 

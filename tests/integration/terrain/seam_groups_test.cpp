@@ -5,6 +5,8 @@
 #include <integration/terrain/detail/seam_groups.hpp>
 #include <tests/support/random.hpp>
 
+#include <Eigen/Core>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +23,7 @@ TEST(SeamGroups, NameNothingNearerThanATriangleCame) {
     struct Triangle {
         std::uint8_t group;
         double extent;
-        double x = 0;
-        double z = 0;
+        std::vector<Eigen::Vector2d> origins{{0, 0}};  // since it came, from the present one
     };
     std::vector<Triangle> triangles;
     for (int step = 0; step < 2000; ++step) {
@@ -34,8 +35,10 @@ TEST(SeamGroups, NameNothingNearerThanATriangleCame) {
             const double z = random.between(-100, 100);
             groups.shiftOrigin(x, z);
             for (Triangle& triangle : triangles) {
-                triangle.x += x;
-                triangle.z += z;
+                for (Eigen::Vector2d& origin : triangle.origins) {
+                    origin += Eigen::Vector2d(x, z);
+                }
+                triangle.origins.emplace_back(0, 0);
             }
         }
         while (triangles.size() > (step < 1000 ? 400U : 20U)) {
@@ -48,7 +51,10 @@ TEST(SeamGroups, NameNothingNearerThanATriangleCame) {
         const double z = random.between(-50, 50);
         double least = 0;
         for (const Triangle& triangle : triangles) {
-            const double largest = std::max(std::abs(x + triangle.x), std::abs(z + triangle.z));
+            double largest = 0;
+            for (const Eigen::Vector2d& origin : triangle.origins) {
+                largest = std::max(largest, (origin + Eigen::Vector2d(x, z)).cwiseAbs().maxCoeff());
+            }
             const double extentNow = std::clamp(triangle.extent, 1.0 / 1024, 16384.0);
             least = std::max(least, largest + extentNow);
         }

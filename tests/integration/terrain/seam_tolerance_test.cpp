@@ -80,6 +80,18 @@ TYPED_TEST(SeamTolerance, FollowsTheShiftsSinceTheTrianglesCame) {
     EXPECT_EQ(this->terrain.size(), 2U);
 }
 
+TYPED_TEST(SeamTolerance, RemembersEachOriginSinceTheTrianglesCame) {
+    this->terrain.add(this->corner(8));
+    for (const double x : {4096.0, -1024.0, -3072.0}) {
+        this->terrain.shiftOrigin(at<TypeParam>(x, 0, 0));
+    }
+    EXPECT_EQ(this->terrain.seamTolerance(this->origin), this->of(4096 + 8));
+    EXPECT_EQ(this->terrain.seamTolerance(at<TypeParam>(-1024, 0, 0)), this->of(3072 + 8));
+    this->terrain.shiftOrigin(at<TypeParam>(-8192, 0, 0));
+    EXPECT_EQ(this->terrain.seamTolerance(this->origin), this->of(8192 + 8));
+    EXPECT_EQ(this->terrain.seamTolerance(at<TypeParam>(1024, 0, 0)), this->of(7168 + 8));
+}
+
 TYPED_TEST(SeamTolerance, IsWhatTheCallerSets) {
     std::vector<Vector3<TypeParam>> strips;  // 4 mm apart
     for (const double x : {-20.0, 0.004}) {

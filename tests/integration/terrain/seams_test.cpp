@@ -129,6 +129,28 @@ TYPED_TEST(TerrainSeams, HaveGroundAfterAShiftOfTheOrigin) {
     }
 }
 
+// A shift rounds as coarsely as its origin is far, and the way back does not undo it.
+TYPED_TEST(TerrainSeams, HaveGroundAfterTheOriginWasFarAway) {
+    Random random(0x5eed2408);
+    std::size_t between = 0;
+    for (int turn = 0; turn < 20; ++turn) {
+        const Chunks<TypeParam> chunks(random, random.pointIn(-50, 50), 0);
+        Grid<TypeParam> grid;
+        Terrain<TypeParam> terrain(grid);
+        chunks.addTo(terrain, 1, 3);
+        const Vector3<TypeParam> away = at<TypeParam>(random.between(-1e5, 1e5), 0, 3e5);
+        for (const Vector3<TypeParam>& shift : {away, Vector3<TypeParam>(-away)}) {
+            grid.shiftOrigin(shift);
+            terrain.shiftOrigin(shift);
+        }
+        grid.update();
+        between += this->expectGround(terrain, chunks.onSeams(random, 1, 3, 5, 1000), 5,
+                                      this->kEpsilon * 1e7);
+        ASSERT_FALSE(this->HasFailure());
+    }
+    EXPECT_GT(between, 1000U);
+}
+
 TYPED_TEST(TerrainSeams, LeaveGapsOfAMillimetreOpen) {
     Random random(0x5eed2404);
     std::vector<Vector3<TypeParam>> strip;
