@@ -16,7 +16,7 @@
 //             thread may use this object.
 // Removed     Call forget() for each removed proxy. (Simulation calls it itself.)
 // Failure     If observe() throws std::bad_alloc, the visible set may be incomplete, colours may be old, and
-//             radarCounts() may be invalid. zoneEvents() has all events or none. The next frames work, and report
+//             radarCounts() may be empty. zoneEvents() has all events or none. The next frames work, and report
 //             missed events.
 
 #include <broadphase/convex_region.hpp>

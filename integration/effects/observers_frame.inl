@@ -270,6 +270,7 @@ void Observers<Scalar>::scanRadar(const Scene& scene, Scalar /*moved*/,
         return id.index < scene.groups.size() ? scene.groups[id.index] : 0;
     };
     RadarWatch& watch = *radar_;
+    watch.counts = {};  // scan() may free them, and then throw
     watch.counts = watch.radar.scan(scene.grid, window, effect.groupCount, groupOf);
     cost_[SceneCounter::radarScans] = 1;
     cost_[SceneCounter::cellRowsVisited] += watch.radar.lastCost().rowsVisited;

@@ -3,11 +3,13 @@
 // Levels of detail: what is declared to be late is, by so much and no more, and the rest is exact.
 
 #include <integration/effects/observers.hpp>
+#include <tests/support/out_of_memory.hpp>
 #include <tests/support/random.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <set>
 #include <vector>
@@ -178,6 +180,35 @@ TEST(Observers, ScanTheRadarEachNthFrame) {
         before = counts;
     }
     EXPECT_EQ(late, 6U);
+}
+
+// A scan with more cells than the last one moves its counts, and may run out of memory after that.
+TEST(Observers, GiveNoCountsThatAScanHasFreed) {
+    Walk walk(0x5eed0ff4);
+    walk.step();
+    const auto make = [&] {
+        SceneEffects effects;
+        effects.radar = RadarEffect{.columns = 2, .rows = 2};
+        auto observers = std::make_unique<Observers<float>>(effects);
+        observers->observe({walk.grid});
+        effects.radar = RadarEffect{.columns = 40, .rows = 40};
+        observers->declare(effects);
+        return observers;
+    };
+    const std::size_t whole = std::size_t{40} * 40 * RadarEffect{}.groupCount;
+    std::set<std::size_t> sizes;
+    runOutOfMemory(
+        make, [&](Observers<float>& observers) { observers.observe({walk.grid}); },
+        [&](const Observers<float>& observers, std::size_t) {
+            const auto counts = observers.radarCounts();
+            sizes.insert(counts.size());
+            std::uint32_t sum = 0;
+            for (const std::uint32_t count : counts) {
+                sum += count;
+            }
+            EXPECT_LE(sum, 400U);
+        });
+    EXPECT_TRUE(sizes.count(whole) == 1 && sizes.count(0) == 1);
 }
 
 TEST(Observers, FindWhoTakesPart) {
