@@ -325,11 +325,11 @@ void Grid<Scalar>::forEach(Visit&& visit) const {
     const auto count =
         static_cast<std::uint32_t>(store_.listFew(few));  // not those that `visit` adds
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t proxyIndex = few.empty() ? i : few[i];
-        if (store_.proxies.isAlive(proxyIndex)) {
-            const Box box =
-                store_.proxies.records[proxyIndex].box;  // a copy: `visit` may move the records
-            visit(store_.proxies.idOf(proxyIndex), box);
+        // Null after `visit` has removed the proxy, or the record, too.
+        const ProxyId id = idAt(few.empty() ? i : few[i]);
+        if (!id.isNull()) {
+            const Box box = store_.proxies.records[id.index].box;  // a copy: `visit` may move them
+            visit(id, box);
         }
     }
 }

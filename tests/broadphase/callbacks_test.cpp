@@ -157,6 +157,33 @@ TEST(GridCallbacks, MayChangeTheGridInAQueryOfTheirOwn) {
     }
 }
 
+TEST(GridCallbacks, MayReleaseTheMemoryOfProxiesThatAreStillToCome) {
+    for (const std::size_t alive : {20U, 1000U}) {  // few of many are listed, and then visited
+        Grid<float> grid;
+        std::vector<ProxyId> ids;
+        for (int i = 0; i < 1000; ++i) {
+            ids.push_back(grid.add(cube(i)));
+        }
+        const auto removeFrom2To = [&](std::size_t end) {
+            for (std::size_t i = 2; i < end; ++i) {
+                if (grid.contains(ids[i])) {
+                    grid.remove(ids[i]);
+                }
+            }
+        };
+        removeFrom2To(1000 - alive + 2);
+        std::size_t calls = 0;
+        grid.forEach([&](ProxyId, const Box&) {
+            if (++calls == 2) {
+                removeFrom2To(1000);
+                grid.releaseUnusedMemory();
+            }
+        });
+        EXPECT_EQ(calls, 2U);
+        EXPECT_EQ(grid.indexLimit(), 2U);
+    }
+}
+
 // The tables are being read, and nothing is filed for the queries within: what an update has filed, or
 // queries before this one.
 class GridCallbacksAfterFiling : public testing::TestWithParam<bool> {};
