@@ -365,6 +365,7 @@ QueryCost RadiusSearch<Scalar>::countGroups(std::uint32_t groupCount,
 
 template <class Scalar>
 std::size_t RadiusSearch<Scalar>::memoryBytes() const noexcept {
+    const std::lock_guard lock(tilesMutex_);  // forEach() may call it on its threads
     std::size_t bytes =
         sizeof(*this) + staged_.capacity() * sizeof(Staged) +
         (few_.capacity() + cellOfPlace_.capacity() + cellStart_.capacity() + places_.capacity() +

@@ -165,7 +165,7 @@ private:
     std::vector<std::uint8_t> groups_;
     detail::RadiusView<Scalar> view_{};
 
-    std::mutex tilesMutex_;
+    mutable std::mutex tilesMutex_;
     std::vector<std::unique_ptr<Tile>> tiles_;  // idle tiles; each working thread borrows one
 };
 
