@@ -171,9 +171,8 @@ public:
     /// Number of proxies whose box has a NaN.
     [[nodiscard]] std::size_t nanCount() const noexcept { return store_.proxies.nanCount; }
 
-    /// Calls visit(ProxyId, const Box&) for every proxy, in ascending index order. This callback may change the grid,
-    /// but must not lower indexLimit(). Cost: O(n) for n proxies. If indexLimit() exceeds 8 n, after a peak:
-    /// O(n log n), and a temporary list.
+    /// Calls visit(ProxyId, const Box&) for every proxy, in ascending index order. This callback may change the grid.
+    /// Cost: O(n) for n proxies. If indexLimit() exceeds 8 n, after a peak: O(n log n), and a temporary list.
     template <class Visit>
     void forEach(Visit&& visit) const;
 
@@ -183,9 +182,9 @@ public:
     /// collectors.hpp): once each, unless the collector changes the proxy. Returns counts of the work.
     /// Cost: grows with the cells that the region touches, up to about one test for each proxy of the grid, or 16
     /// tests for each if many cells share hash buckets. Plus one test for each proxy that changed since the last sort
-    /// into cells. A region with a NaN tests only these changed proxies; a ray with a NaN in its fatness tests all
-    /// proxies. In a cell with hundreds of proxies, regions with bounds() usually test only boxes near the region
-    /// along one axis (the axis that separates these boxes best), and boxes much longer than average along it.
+    /// into cells. A region with a NaN tests only these changed proxies. In a cell with hundreds of proxies, regions
+    /// with bounds() usually test only boxes near the region along one axis (the axis that separates these boxes
+    /// best), and boxes much longer than average along it.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 

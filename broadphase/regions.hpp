@@ -100,7 +100,7 @@ private:
 /// is the fraction of the segment at which the ray enters the box, 0 if the ray begins inside.
 ///
 /// Touching a face, an edge or a corner is a hit. If rounding leaves doubt, the ray hits. The length may be 0. If an
-/// end or the length is infinite, the region is empty.
+/// end or the length is infinite, or any number is NaN, the region is empty.
 ///
 ///     CollectClosest<float> first;
 ///     grid.visit(RayRegion<float>(from, to), first);  // entry: from + first.key() * (to - from)
@@ -113,7 +113,7 @@ public:
               const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(), Vector3<Scalar>::Zero()})
         : from_(from), direction_(to - from), fatness_(fatness) {
         using Limits = std::numeric_limits<Scalar>;
-        if (!detail::areFinite(from_) || !detail::areFinite(direction_)) {
+        if (!detail::areFinite(from_) || !detail::areFinite(direction_) || hasNan(fatness_)) {
             direction_.setConstant(Limits::quiet_NaN());
         } else if (direction_.cwiseAbs().maxCoeff() > 1 / Limits::min()) {
             scale_ = Scalar(0.125);
@@ -172,8 +172,7 @@ public:
         return enter <= exit ? std::min(enter, Scalar(1)) : Scalar(-1);
     }
 
-    /// True if an end or the length of the segment is NaN or infinite: the region is empty. If only `fatness` has a
-    /// NaN, the region is empty too, but isEmpty() is false.
+    /// True if an end or the length of the segment is NaN or infinite, or `fatness` has a NaN: the region is empty.
     [[nodiscard]] bool isEmpty() const noexcept { return detail::anyNan(direction_); }
     /// The start of the ray [m].
     [[nodiscard]] const Vector3<Scalar>& from() const noexcept { return from_; }

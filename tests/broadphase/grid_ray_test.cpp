@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -96,6 +97,27 @@ TYPED_TEST(RayQuery, MissesInvertedBoxesWhateverItsDirection) {
          {Vector3<double>(0.5, 0.5, 9), Vector3<double>(1, 1, 1), Vector3<double>(0.5, 1, 2)}) {
         const Vector3<TypeParam> from(TypeParam(0.5), TypeParam(0.5), -9);
         EXPECT_LT(RayRegion<TypeParam>(from, to.cast<TypeParam>()).key(inverted), 0);
+    }
+}
+
+TYPED_TEST(RayQuery, IsEmptyIfAnyOfItsNumbersIsNan) {
+    using Point = Vector3<TypeParam>;
+    Grid<TypeParam> grid;
+    [[maybe_unused]] const ProxyId id = grid.add({Point(-1, -1, -1), Point(1, 1, 1)});
+    grid.update();
+    for (int number = 0; number <= 12; ++number) {
+        std::array<Point, 4> corners{Point(-5, 0, 0), Point(5, 0, 0), Point(-1, -1, -1),
+                                     Point(1, 1, 1)};
+        if (number < 12) {
+            corners[static_cast<std::size_t>(number / 3)][number % 3] =
+                std::numeric_limits<TypeParam>::quiet_NaN();
+        }
+        const RayRegion<TypeParam> ray(corners[0], corners[1], {corners[2], corners[3]});
+        CollectCount count;
+        const QueryCost cost = grid.visit(ray, count);
+        EXPECT_EQ(ray.isEmpty(), number < 12) << number;
+        EXPECT_EQ(count.count(), number < 12 ? 0U : 1U) << number;
+        EXPECT_EQ(cost.boxesTested, number < 12 ? 0U : 1U) << number;
     }
 }
 
