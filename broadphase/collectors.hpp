@@ -11,8 +11,8 @@
 //     CollectAll all(found);
 //     grid.visit(BoxRegion<float>{box}, all);  // the answer is in `found`
 //
-// Use      Pass a variable, not a temporary. After the query, the collector holds the answer, or the vector that its
-//          constructor received. Use a collector in one query at a time, on one thread.
+// Use      Pass a variable, not a temporary. After the query, the answer is in the collector, or in the vector that
+//          its constructor received. Use a collector in one query at a time, on one thread.
 // Keys     The region defines the keys (regions.hpp): 0, a squared distance [m^2], or a fraction of a path.
 // Own      Any class with these members is a collector. add() receives keys of the grid's Scalar; limit() may return
 //          float or double. For collectors that change the grid, see Callbacks in grid.hpp.

@@ -16,7 +16,7 @@
 //            use the same mode.
 // Callbacks  A collector may query the grid. In visit(), it may also change the grid, if no other thread queries
 //            until visit() returns. visit() never offers a removed proxy; it may offer proxies added meanwhile,
-//            and may offer a proxy again that the collector changed. Asserted: collectors of visitEach() or
+//            and may offer again a proxy that the collector changed. Asserted: collectors of visitEach() or
 //            ConvexRegion queries, and PairFilters, do not change the grid; no collector calls update() or
 //            shiftOrigin().
 // Memory     Calls that allocate can throw std::bad_alloc. No data is lost, and you can repeat the call. remove(),
@@ -164,8 +164,8 @@ public:
     }
 
     /// Identifies the set of proxies and the origin: when the number changes, stored query results are out of date.
-    /// Every add(), remove(), clear(), shiftOrigin() and GridSnapshot::restore() changes it. move() does not,
-    /// although it can change query results. No two grids share a number.
+    /// Every add(), remove(), clear(), shiftOrigin() (except by 0) and GridSnapshot::restore() changes it. move()
+    /// does not, although it can change query results. No two grids share a number.
     [[nodiscard]] std::uint64_t populationNumber() const noexcept { return store_.proxies.number; }
 
     /// Number of proxies whose box has a NaN.
@@ -182,9 +182,9 @@ public:
     /// collectors.hpp): once each, unless the collector changes the proxy. Returns counts of the work.
     /// Cost: grows with the cells that the region touches, up to about one test for each proxy of the grid, or 16
     /// tests for each if many cells share hash buckets. Plus one test for each proxy that changed since the last sort
-    /// into cells. A region with a NaN tests only these changed proxies. In a cell with hundreds of proxies, regions
-    /// with bounds() usually test only boxes near the region along one axis (the axis that separates these boxes
-    /// best), and boxes much longer than average along it.
+    /// into cells. A region with a NaN tests only these changed proxies, and with bounds(), the proxies in no cell
+    /// (filed_cells.hpp). In a cell with hundreds of proxies, regions with bounds() usually test only boxes near the
+    /// region along one axis (the axis that separates these boxes best), and boxes much longer than average along it.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 

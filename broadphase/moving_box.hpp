@@ -9,8 +9,8 @@
 // Time      from 0 (boxes as given) to 1 (moved by the whole displacement), both inclusive
 // Closed    Sharing a face, an edge or a corner for a moment counts as touching.
 // Exact     The decision whether boxes touch has no rounding error: always in single precision; in double precision
-//           for nonzero coordinates and displacements from 1e-140 to 1e300 m in magnitude, of which none is more than
-//           1e140 times another. The time is rounded to double precision.
+//           if all coordinates and displacements other than 0 are from 1e-140 to 1e300 m in magnitude, and none is
+//           more than 1e140 times another. The time is rounded to double precision.
 // Units     metres
 // Bad data  A box with a NaN, or with a NaN or infinite displacement, touches nothing.
 // Threads   values and pure functions; use them from any thread

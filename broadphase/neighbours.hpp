@@ -26,7 +26,7 @@ class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Neighbours {
 public:
     /// Returns all pairs of proxies whose boxes are at most `distance` [m] apart, in any order. Each pair appears
     /// once. The distance is between nearest points, and 0 if boxes overlap. A negative or NaN distance finds
-    /// nothing. A box with a NaN has no neighbours. Neither the pairs nor their order depend on `parallelFor`. The
+    /// nothing. A box with a NaN has no neighbours. Neither the pairs nor their order depends on `parallelFor`. The
     /// result is valid until the next find(). Frees unused memory after 256 calls in a row with over eight times the
     /// needed capacity.
     /// Cost: as Grid::update(), plus O(pairs); at most O(n^2) for n proxies.

@@ -24,8 +24,8 @@ namespace hashphase {
 /// Decides which overlapping proxies make a pair: a function that takes two ids, or a function that takes many pairs.
 ///
 /// Calls    Pairs asks once when two proxies begin to overlap. It asks again about a refused pair when either
-///          proxy's box or groups change, and in refilter(), which also asks again about accepted pairs. It never
-///          asks about ignored pairs, or pairs that groups refuse.
+///          proxy's box or groups change or either proxy sweeps, and in refilter(), which also asks again about
+///          accepted pairs. It never asks about ignored pairs, or pairs that groups refuse.
 /// Order    ascending by ids. Thousands of candidates may arrive in parts; in that case, each part is sorted.
 /// Threads  The filter runs on the thread that calls Pairs.
 /// Misuse   Asserted: the filter does not change the grid. It may query the grid.

@@ -71,11 +71,12 @@ public:
     /// Number of sweeping proxies, including proxies removed from the grid since the last update.
     [[nodiscard]] std::size_t size() const noexcept { return sweeping_.motions.size(); }
 
-    /// Like Grid::visit(), but finds sweeping proxies along their paths. With Sweep::box, tests the box around the
-    /// path. With other modes, tests boxes around up to 64 parts of the path. The key is the smallest key of these
-    /// boxes. Finds every proxy that passes through the region. May also find proxies that pass near it. With a
-    /// PositionRegion or Containment::inside, a sweeping proxy is certain to be found only if its box at the start of
-    /// the path is in the region. Cost: as Grid::visit(), plus a test for each part of each path.
+    /// Like Grid::visit(), but finds sweeping proxies along their paths. Tests the box at the start of the path. With
+    /// Sweep::box, also tests the box around the path. With other modes, also tests boxes around up to 64 parts of
+    /// the path. The key is the smallest key of these boxes. Finds every proxy that passes through the region. May
+    /// also find proxies that pass near it. With a PositionRegion or Containment::inside, a sweeping proxy is certain
+    /// to be found only if its box at the start of the path is in the region. Cost: as Grid::visit(), plus a test for
+    /// each part of each path.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 

@@ -34,7 +34,7 @@ public:
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
                      ProxyFilter changes = acceptAll, ParallelFor parallelFor = serialFor);
 
-    /// As update(), but changes only the colours of `agents`, even of agents that `filter` refuses. `filter` only
+    /// As update(), but changes only the colours of `agents`, including agents that `filter` refuses. `filter` only
     /// chooses the neighbours that are counted. Asserted: `agents` are in the grid, and `colours` has at least
     /// Grid::indexLimit() elements. Cost: a query for each agent (Grid::visitEach()): for few agents, cheaper than
     /// update().

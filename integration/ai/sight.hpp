@@ -14,7 +14,7 @@
 //           all threads of `parallelFor`. During look(), no other thread may use the Sight object.
 // Bad data  A viewer sees nothing if its range or half angle is negative or NaN, or its eye is not finite. With a
 //           half angle below pi, it also sees nothing if its direction is zero or not finite. A proxy is not seen if
-//           its distance overflows.
+//           its distance along an axis overflows.
 
 #include <broadphase/grid.hpp>
 #include <broadphase/parallel_for.hpp>

@@ -38,7 +38,7 @@ enum class SceneCounter : std::uint8_t {
     // The grid and its pairs.
     proxiesHashed,    ///< boxes passed to Grid::move()
     entriesFiled,     ///< entries written into the grid's tables
-    cellRowsVisited,  ///< rows of cells (for rays: blocks of boxes) read; includes cellRowsCulled
+    cellRowsVisited,  ///< rows of cells (for rays: blocks of boxes) read by picks, selections, culling, zones, radar
     boxesTested,      ///< boxes tested for pairs
     pairsWatched,     ///< existing pairs tested for overlap
     couplesWatched [[deprecated("pairsWatched")]] = pairsWatched,

@@ -48,8 +48,8 @@ struct TerrainEffect {
 /// Finds births and deaths of overlapping pairs (pairs.hpp).
 struct PairsEffect {};
 
-/// Touching spheres that approach each other bounce. If `restitution` is 1, they exchange their velocities along the
-/// line between their centres. Needs pairs and motion.
+/// Touching spheres that approach each other bounce. If `restitution` is 1, two spheres that take part in motion
+/// exchange their velocities along the line between their centres. Needs pairs and motion.
 struct ResponseEffect {
     double restitution = 1;  ///< from 0 (no bounce) to 1 (no loss)
 };
