@@ -128,8 +128,8 @@ public:
     /// With SpatialHashConfig::sweep, it also holds pairs of proxies that meet on their paths. Persisting pairs are
     /// not touched. First removes the separated pairs, then adds the new pairs, both sorted by ProxyId. Changes and
     /// order depend on the boxes at the last calculation and now, not on the calls between. Finally, adds pairs again
-    /// that the program removed from a PairCache, unless their proxies separated or the filter refuses them. A cache not
-    /// passed as a PairCache gets such pairs back only when the proxies meet again.
+    /// that the program removed from a PairCache, unless their proxies separated or the filter refuses them. A cache
+    /// not passed as a PairCache gets such pairs back only when the proxies meet again.
     /// You may write groups and masks at any time. A newly allowed pair begins after the box of one of its proxies
     /// changes. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), the box need not change: call
     /// setAabb() with the old box for the proxy whose group or mask you changed. A pair that is no longer allowed

@@ -25,7 +25,7 @@ struct SpatialHashConfig {
     GridConfig grid{};
 
     /// createProxy() and setAabb() of a ghost object add its pairs at once, as Bullet's character controller expects.
-    /// With the broadphase's own cache, or a cache passed as a PairCache*, this needs an internal ghost pair callback.
+    /// With the broadphase's own cache or a cache passed as a PairCache*, this needs an internal ghost pair callback.
     /// With a cache passed as a btOverlappingPairCache*, it does not. An object also pairs with a ghost at once if it
     /// is created in the ghost's box, or moves there so far that its new box does not touch its previous box. Calls
     /// with a dispatcher, such as by a btCollisionWorld, cast the client of each proxy whose group and mask are not 0

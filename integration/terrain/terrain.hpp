@@ -25,7 +25,7 @@
 // Bad data  add() and replace() refuse and list triangles with a bad corner. Queries find no ground for bad points
 //           and radii.
 // Misuse    These fail an assertion and change nothing: a number of corners or indices that is no multiple of 3, bad
-//           tolerances, more than 2^32 - 2 triangles, numbers for replace() and remove() that are free or not below
+//           tolerances, more than 2^32 - 1 triangles, numbers for replace() and remove() that are free or not below
 //           size(). Asserted (otherwise undefined behaviour): spans have equal lengths; numbers for corners(),
 //           normal() and proxy() are below size().
 // Source    The object-terrain test of Hastings, Mesit and Guha for flat ground, extended to slopes and edges.

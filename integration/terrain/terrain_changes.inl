@@ -97,7 +97,7 @@ template <class Scalar>
 AddedTriangles Terrain<Scalar>::addAll(std::size_t count, CornersOf cornersOf) {
     const std::uint32_t first = free_.firstFit(count, size());
     HASHPHASE_ASSERT(count <= kNone - first,
-                     "Terrain::add(): the terrain would have 2^32 - 1 triangles or more. Add "
+                     "Terrain::add(): the terrain would have 2^32 triangles or more. Add "
                      "fewer, or use another terrain.");
     if (count > kNone - first) {
         return {};
