@@ -76,8 +76,8 @@ public:
              const MoveOf& moveOf) {
         constexpr std::size_t kGrain = MoveScratch::kGrain;
         std::size_t first = 0;
-        // Moves proxies one by one while Tables::fresh is in use. The first change makes Tables::fresh the mobile
-        // table.
+        // Moves proxies one by one while Tables::fresh is in use. The first move that changes a box makes it
+        // the mobile table, and ends this loop.
         for (; first < count && store_.tables.isFresh.load(std::memory_order_relaxed); ++first) {
             if (prepare(first)) {
                 moveInTurn(moveOf(first));

@@ -18,7 +18,7 @@
 // Threads     Const functions may run on several threads at once. During other calls, no other thread may use this
 //             object, except that visit() may call const functions. take() reads the grid, as queries do.
 // Units       metres, or the grid's unit of length
-// See also    Neighbours (neighbours.hpp) lists pairs of boxes.
+// See also    Neighbours (neighbours.hpp), which lists pairs of boxes.
 
 #include <broadphase/export.hpp>
 #include <broadphase/grid.hpp>

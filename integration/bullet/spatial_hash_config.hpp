@@ -27,9 +27,9 @@ struct SpatialHashConfig {
     /// createProxy() and setAabb() of a ghost object add its pairs at once, as Bullet's character controller expects.
     /// With the broadphase's own cache or a cache passed as a PairCache*, this needs an internal ghost pair callback.
     /// With a cache passed as a btOverlappingPairCache*, it does not. An object also pairs with a ghost at once if it
-    /// is created in the ghost's box, or moves there so far that its new box does not touch its previous box. Calls
-    /// with a dispatcher, such as by a btCollisionWorld, cast the client of each proxy whose group and mask are not 0
-    /// to btCollisionObject. Set false if clients have other types.
+    /// is created in the ghost's box, or moves there so far that its new box does not touch its previous box. If
+    /// a call passes a dispatcher, as btCollisionWorld does, each proxy's client is cast to btCollisionObject, unless
+    /// the group or mask is 0. Set false if clients have other types.
     bool eagerGhosts = true;
 
     /// createProxy() and setAabb() of a proxy in these groups add its pairs at once, too. For code without ghost

@@ -96,8 +96,9 @@ struct WorldEffects {
     /// Bodies slower than this [m/s] may fall asleep. If unset, bodies keep their own thresholds.
     std::optional<btScalar> slowBelow{};
 
-    /// Returns the effects of an object, to switch effects off for single objects. May be empty. Two objects pair
-    /// only if both have `pairs`. The overlap filter calls this function too, on the thread that asks the filter.
+    /// Returns the effects of an object, to switch effects off for single objects. If this function is not set, none
+    /// is switched off. Two objects pair only if both have `pairs`. The overlap filter calls this function too, on
+    /// the thread that asks the filter.
     std::function<BodyEffects(const btCollisionObject&)> effectsOf{};
 };
 

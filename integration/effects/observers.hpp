@@ -83,8 +83,8 @@ public:
     Observers& operator=(const Observers&) = delete;
 
     /// Changes the declaration. Frees tables of effects that are no longer declared. Effects that stay declared keep
-    /// their zones, colours and view. The next frame has no late results, except for agents that wait for their turn.
-    /// Throws as the constructor, or std::bad_alloc. After an exception, nothing has changed.
+    /// their zones, colours and view. The next frame computes all results again, except colours of agents whose turn
+    /// comes later. Throws as the constructor, or std::bad_alloc. After an exception, nothing has changed.
     void declare(const SceneEffects& effects);
 
     [[nodiscard]] const SceneEffects& declared() const noexcept { return effects_; }

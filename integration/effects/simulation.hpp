@@ -155,7 +155,7 @@ public:
     void watchPhases(std::function<void(std::string_view)> watch);
 
     /// Lets two bodies bounce if they touch and approach each other. Use it for pairs from another broadphase.
-    /// Returns whether they bounced. If a body takes no part in response, it never bounces. The order of `first` and
+    /// Returns whether they bounced. Neither bounces if one takes no part in response. The order of `first` and
     /// `second` does not matter. To replace the response effect, call collide() after advance() for all touching
     /// pairs, sorted by the lower index of the two bodies, then by the higher index. Results are equal to the last
     /// bit if no body sweeps or falls asleep. `restitution`: see ResponseEffect. Needs Effect::motion. Asserted: the

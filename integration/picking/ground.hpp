@@ -20,8 +20,8 @@
 namespace hashphase {
 
 /// Returns the part of a ray between the heights. Except for rounding, this part meets every box between the heights
-/// that the whole ray meets. Results such as Picked::fraction are fractions of the ray with which you query. Returns
-/// an empty ray if no part is between the heights.
+/// that the whole ray meets. If you query with this part, results such as Picked::fraction are fractions of it, not
+/// of the whole ray. Returns an empty ray if no part is between the heights.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT RayRegion<Scalar> clipToHeights(
     const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights);

@@ -151,8 +151,8 @@ public:
 
     // --- Seams -----------------------------------------------------------------------------------
 
-    /// Sets the tolerance [m]: the largest distance, seen from above, between a point in a gap and its triangle (see
-    /// Seams at the top). If 0, gaps stay open. If std::nullopt, the default, the tolerance is automatic: see
+    /// Sets the tolerance [m]: a point in a gap belongs to a triangle that is, seen from above, at most this far away
+    /// (see Seams at the top). If 0, gaps stay open. If std::nullopt, the default, the tolerance is automatic: see
     /// seamTolerance(). Set a tolerance if you computed the corners from larger numbers than the two lengths in
     /// seamTolerance() (for example, far from the origin), or if the tolerance must not depend on the present
     /// triangles. Gaps up to twice the tolerance are closed. Ledges extend outwards by the tolerance. clear() keeps
