@@ -176,6 +176,7 @@ TEST(GridCallbacks, MayReleaseTheMemoryOfProxiesThatAreStillToCome) {
         grid.forEach([&](ProxyId, const Box&) {
             if (++calls == 2) {
                 removeFrom2To(1000);
+                grid.update();
                 grid.releaseUnusedMemory();
             }
         });
