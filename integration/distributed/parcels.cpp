@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/distributed/detail/parcels.hpp>
 
+#include <broadphase/core/raise.inl>
+
 namespace hashphase::detail {
 namespace {
 
@@ -33,7 +35,7 @@ ByteReader openParcel(const Parcel& parcel, std::uint32_t magic, const char* isN
 }
 
 void raiseBadParcel(const Parcel& parcel, const std::string& fault) {
-    throw RankError("The parcel from rank " + std::to_string(parcel.rank) + " " + fault);
+    raise(RankError("The parcel from rank " + std::to_string(parcel.rank) + " " + fault));
 }
 
 }  // namespace hashphase::detail
