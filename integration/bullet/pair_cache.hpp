@@ -393,7 +393,7 @@ private:
     [[nodiscard]] std::vector<PairSortKey> notesOf(const btBroadphaseProxy& proxy);
     template <class Visit>
     void forEachPairOf(const btBroadphaseProxy& proxy, const Visit& visit);
-    void tellGhostsAgain(std::uint64_t ids, const btBroadphasePair& pair, btDispatcher* dispatcher);
+    void tellGhostsAgain(std::uint64_t ids, btDispatcher* dispatcher);
     template <class Visit>
     void forEachUnnoted(const btBroadphaseProxy& proxy, const Visit& visit);
     void processByUniqueId(btOverlapCallback& callback, btDispatcher* dispatcher);

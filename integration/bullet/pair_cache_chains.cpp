@@ -209,18 +209,20 @@ void PairCache::renewPairsContainingProxy(btBroadphaseProxy* proxy, btDispatcher
     checkMayChange();
     forEachPairOf(*proxy, [&](std::uint64_t ids, btBroadphasePair& pair) {
         cleanOverlappingPair(pair, dispatcher);
-        tellGhostsAgain(ids, pair, dispatcher);
+        tellGhostsAgain(ids, dispatcher);
     });
 }
 
-// The callback may remove the pair, or itself.
-void PairCache::tellGhostsAgain(std::uint64_t ids, const btBroadphasePair& pair,
-                                btDispatcher* dispatcher) {
-    btBroadphaseProxy* const proxy0 = pair.m_pProxy0;
-    btBroadphaseProxy* const proxy1 = pair.m_pProxy1;
-    if (ghosts_ != nullptr) {
-        ghosts_->removeOverlappingPair(proxy0, proxy1, dispatcher);
+// Freeing the algorithm may have moved the pair, or removed it: then ghosts know. The callback may remove the
+// pair, or itself.
+void PairCache::tellGhostsAgain(std::uint64_t ids, btDispatcher* dispatcher) {
+    const std::uint32_t index = ids_.find(ids);
+    if (ghosts_ == nullptr || index == kNone) {
+        return;
     }
+    btBroadphaseProxy* const proxy0 = pairs_[static_cast<int>(index)].m_pProxy0;
+    btBroadphaseProxy* const proxy1 = pairs_[static_cast<int>(index)].m_pProxy1;
+    ghosts_->removeOverlappingPair(proxy0, proxy1, dispatcher);
     if (ghosts_ != nullptr && ids_.find(ids) != kNone) {
         ghosts_->addOverlappingPair(proxy0, proxy1);
     }

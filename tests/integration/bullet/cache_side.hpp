@@ -12,14 +12,23 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace hashphase::test {
 
-/// Does nothing but write down when it is freed.
+/// Does nothing but write down when it is freed, and act then where that is asked for.
 struct NotedAlgorithm : btCollisionAlgorithm {
-    NotedAlgorithm(Uids of, std::vector<Uids>& list) : uids(of), freed(list) {}
-    ~NotedAlgorithm() override { freed.push_back(uids); }
+    using Act = std::function<void(const Uids&)>;
+
+    NotedAlgorithm(Uids of, std::vector<Uids>& list, const Act& acts)
+        : uids(of), freed(list), act(acts) {}
+    ~NotedAlgorithm() override {
+        freed.push_back(uids);
+        if (act) {
+            act(uids);
+        }
+    }
     void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*,
                           const btDispatcherInfo&, btManifoldResult*) override {}
     btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
@@ -29,6 +38,7 @@ struct NotedAlgorithm : btCollisionAlgorithm {
     void getAllContactManifolds(btManifoldArray&) override {}
     Uids uids;
     std::vector<Uids>& freed;
+    const Act& act;
 };
 
 struct CacheSide {
@@ -44,6 +54,7 @@ struct CacheSide {
         }
     }
     ~CacheSide() {
+        onFreed = nullptr;
         cache.setInternalGhostPairCallback(nullptr);
         for (btBroadphaseProxy& proxy : proxies) {
             cache.removeOverlappingPairsContainingProxy(&proxy, &dispatcher);
@@ -68,7 +79,7 @@ struct CacheSide {
 
     void giveAlgorithm(btBroadphasePair& pair) {
         void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
-        pair.m_algorithm = new (memory) NotedAlgorithm(uidsOf(pair), freed);
+        pair.m_algorithm = new (memory) NotedAlgorithm(uidsOf(pair), freed, onFreed);
     }
     /// To all pairs that have none, but for those of which `isLeft` is true.
     template <class IsLeft>
@@ -108,6 +119,7 @@ struct CacheSide {
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher{&configuration};
     std::vector<Uids> freed;
+    NotedAlgorithm::Act onFreed;
     PairJournal ghosts;  // to be set as the callback
     std::array<btBroadphaseProxy, kProxies> proxies;
     PairCache cache;

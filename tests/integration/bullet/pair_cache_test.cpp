@@ -6,9 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <random>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace hashphase::test {
 namespace {
@@ -226,6 +230,51 @@ TEST(PairCache, ToleratesChangesByTheCallback) {
         side.cache.processAllOverlappingPairs(&takeOut, nullptr);
         EXPECT_EQ(takeOut.shown.size(), std::size_t(count));
         EXPECT_EQ(side.cache.getNumOverlappingPairs(), isPutBack ? count : 0);
+    }
+}
+
+// As a contact-ended callback does that makes or destroys a proxy.
+TEST(PairCache, RenewsPairsThoughFreeingAnAlgorithmChangesTheCache) {
+    struct Change {
+        Uids when;  // the algorithm of this pair is freed
+        void (*make)(CacheSide&);
+    };
+    const std::array<Change, 3> changes{
+        Change{{1, 2}, [](CacheSide& side) { side.remove(1, 2); }},
+        Change{{1, 2},
+               [](CacheSide& side) {
+                   side.cache.removeOverlappingPairsContainingProxy(side.proxy(1),
+                                                                    &side.dispatcher);
+               }},
+        // The place of one goes to the last pair, whose own goes to a new one; then the array moves.
+        Change{{1, 8}, [](CacheSide& side) {
+                   side.remove(3, 4);
+                   side.addBand();
+               }}};
+    for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
+        for (const Change& change : changes) {
+            CacheSide side(order);
+            side.cache.setInternalGhostPairCallback(&side.ghosts);
+            for (const auto& [a, b] :
+                 {Uids(1, 2), Uids(3, 4), Uids(1, 5), Uids(6, 7), Uids(1, 8)}) {
+                side.add(a, b);
+            }
+            side.giveAlgorithms();
+            side.onFreed = [&](const Uids& uids) {
+                if (uids == change.when) {
+                    change.make(side);
+                }
+            };
+            side.cache.renewPairsContainingProxy(side.proxy(1), &side.dispatcher);
+            const std::vector<PairJournal::Told>& told = side.ghosts.all;
+            for (const int other : {2, 5, 8}) {
+                const PairJournal::Told end{false, 1, other};
+                EXPECT_EQ(std::count(told.begin(), told.end(), end), 1);
+            }
+            EXPECT_EQ(side.ghosts.errors, std::vector<std::string>{});
+            EXPECT_EQ(side.ghosts.alive, uidPairs(side.cache));
+            EXPECT_EQ(side.cache.validate(), "");
+        }
     }
 }
 
