@@ -395,23 +395,28 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
 
 // Caches with deferred removal ignore removeOverlappingPair() and keep duplicates; their user is to
 // sort the array, free what is doubled or no pair any more, and cut it off: at the end of a step what
-// is apart, after recacheFilter() what the filter refuses.
+// is apart, after recacheFilter() what the filter refuses. The array is cut before anything is freed,
+// for callbacks may change it.
 void SpatialHashBroadphase::removeDeferred(IsPair isPair, btDispatcher* dispatcher) {
     if (!pairCache_->hasDeferredRemoval()) {
         return;
     }
     btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
     pairs.quickSort(btBroadphasePairSortPredicate());
+    btBroadphasePairArray cut;
     int kept = 0;
     for (int i = 0; i < pairs.size(); ++i) {
         const bool isDouble = kept > 0 && pairs[i] == pairs[kept - 1];
         if (!isDouble && isPair(pairs[i])) {
             pairs.swap(kept++, i);
         } else {
-            pairCache_->cleanOverlappingPair(pairs[i], dispatcher);
+            cut.push_back(pairs[i]);
         }
     }
     pairs.resize(kept);
+    for (int i = 0; i < cut.size(); ++i) {
+        pairCache_->cleanOverlappingPair(cut[i], dispatcher);
+    }
 }
 
 bool SpatialHashBroadphase::doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const {

@@ -3,6 +3,7 @@
 // Callbacks that are told of the end of pairs while proxies are destroyed, set or filtered in a batch, and change
 // others of the batch, or bring about new pairs with who is on the way out.
 
+#include <tests/integration/bullet/cache_side.hpp>
 #include <tests/integration/bullet/many_worlds.hpp>
 
 #include <btBulletDynamicsCommon.h>
@@ -228,6 +229,32 @@ TEST(CallbacksOfEnds, OfContactsMayRemoveABodyThatIsAboutToPair) {
     removeABodyThatIsAboutToPair([](PairCache& cache) {
         return std::make_unique<WorldsBroadphase>(&cache, worldsByUserIndex(1));
     });
+}
+
+TEST(CallbacksOfEnds, MayDestroyOthersWhilePairsLeaveACacheThatDefersRemoval) {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    std::vector<Uids> freed;
+    AnyBoxes boxes(std::make_unique<btSortedOverlappingPairCache>());
+    for (const double x : {0.0, 0.5, 10.0, 10.5, 10.6}) {
+        boxes.create(cubeAt(btScalar(x)));
+    }
+    boxes.step();
+    ASSERT_EQ(boxes.pairCount(), 4);
+    const NotedAlgorithm::Act destroyAnother = [&](const Uids& /*ended*/) {
+        boxes.destroy(boxes.proxies[3]);
+    };
+    btBroadphasePair* const parting =
+        boxes.pairCache().findPair(boxes.proxies[0], boxes.proxies[1]);
+    ASSERT_NE(parting, nullptr);
+    void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
+    parting->m_algorithm = new (memory) NotedAlgorithm(uidsOf(*parting), freed, destroyAnother);
+    boxes.set(boxes.proxies[0], cubeAt(50));
+    boxes.over->calculateOverlappingPairs(&dispatcher);
+    EXPECT_EQ(freed, std::vector<Uids>{Uids(1, 2)});
+    ASSERT_EQ(boxes.pairCount(), 1) << "the one that the destroyed proxy has no part in";
+    EXPECT_EQ(boxes.list(), std::vector<Uids>{Uids(3, 5)});
+    EXPECT_EQ(boxes.hash().validate(), "");
 }
 
 TEST(WorldsBroadphase, HasTheBoundsOfOneBroadphaseWithTheSameBoxes) {
