@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/ai/rarest_colour.hpp>
 
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/core/shared_cost.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/grid.hpp>
@@ -16,6 +17,10 @@ namespace hashphase {
 namespace {
 
 constexpr std::size_t kAtOnce = 16;
+
+[[maybe_unused]] constexpr const char* kIsUpdating =
+    "RarestColour was updated from within its own filter or changes. Update it after that update "
+    "returns.";
 
 /// Counts the colours of those who are near one agent.
 struct ColourCount {
@@ -71,11 +76,21 @@ QueryCost countAround(const Grid<Scalar>& grid, Scalar radius, std::uint32_t col
 
 }  // namespace
 
+// The search tells its own scopes, so there may be none of this object's around its calls.
+template <class Scalar>
+bool RarestColour<Scalar>::isUpdating() const noexcept {
+    return detail::QueryScope::isWithin(this) || detail::QueryScope::isWithin(&search_);
+}
+
 template <class Scalar>
 QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
                                        std::uint32_t colourCount, std::span<std::uint32_t> colours,
                                        ProxyFilter filter, ProxyFilter changes,
                                        ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!isUpdating(), kIsUpdating);
+    if (isUpdating()) {
+        return {};
+    }
     HASHPHASE_ASSERT(colourCount > 0 && colourCount <= RadiusSearch<Scalar>::kMostGroups,
                      "RarestColour::update(): colourCount is 0 or too large. Pass 1 to "
                      "RadiusSearch::kMostGroups.");
@@ -94,6 +109,7 @@ QueryCost RarestColour<Scalar>::update(const Grid<Scalar>& grid, Scalar radius,
     // ... then all change.
     constexpr std::size_t kGrain = 4096;
     parallelFor(ids.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        const detail::QueryScope scope(this);
         for (std::size_t agent = begin; agent < end; ++agent) {
             if (!changes(ids[agent])) {
                 continue;
@@ -112,6 +128,10 @@ QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radi
                                            std::span<std::uint32_t> colours,
                                            std::span<const ProxyId> agents, ProxyFilter filter,
                                            ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!isUpdating(), kIsUpdating);
+    if (isUpdating()) {
+        return {};
+    }
     HASHPHASE_ASSERT(colourCount > 0 && colourCount <= RadiusSearch<Scalar>::kMostGroups,
                      "RarestColour::updateSome(): colourCount is 0 or too large. Pass 1 to "
                      "RadiusSearch::kMostGroups.");
@@ -123,6 +143,7 @@ QueryCost RarestColour<Scalar>::updateSome(const Grid<Scalar>& grid, Scalar radi
     constexpr std::size_t kGrain = 64;
     detail::SharedCost sum;
     parallelFor(agents.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        const detail::QueryScope scope(this);
         QueryCost cost;
         for (std::size_t first = begin; first < end; first += kAtOnce) {
             const std::size_t count = std::min(kAtOnce, end - first);

@@ -11,6 +11,7 @@
 // Bad data  Agents without a position (position_region.hpp) keep their colours. If the radius is negative or NaN,
 //           agents have no neighbours. An agent whose colour is colourCount or more is not counted, but gets a new
 //           colour.
+// Misuse    Asserted: callbacks do not update this object. Without assertions, such an update does nothing.
 
 #include <broadphase/radius_search.hpp>
 #include <integration/ai/export.hpp>
@@ -50,6 +51,9 @@ public:
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:
+    /// Returns whether this thread is within a callback of an update.
+    [[nodiscard]] bool isUpdating() const noexcept;
+
     RadiusSearch<Scalar> search_;
     std::vector<std::uint32_t> counts_;  // index: agent * colourCount + colour
     std::vector<std::uint32_t> rarest_;  // for each agent of updateSome()

@@ -77,6 +77,27 @@ TEST_F(AiMisuse, OfTheRarestColourWithoutAColourForEachAgentOrOfTooManyIsAsserte
     EXPECT_THROW(rarest.update(grid_, 1, 2, {}), BrokenAssert);
 }
 
+TEST_F(AiMisuse, OfTheRarestColourByItsFilterOrChangesIsAsserted) {
+    RarestColour<float> rarest;
+    std::vector<std::uint32_t> colours(3);
+    std::vector<ProxyId> agents;
+    grid_.forEach([&](ProxyId id, const Aabb<float>& /*box*/) { agents.push_back(id); });
+    const auto updates = [&](ProxyId) {
+        ++calls_;
+        EXPECT_THROW(rarest.update(grid_, 9, 2, colours), BrokenAssert);
+        EXPECT_THROW(rarest.updateSome(grid_, 9, 2, colours, agents), BrokenAssert);
+        return true;
+    };
+    rarest.update(grid_, 9, 2, colours, updates);
+    EXPECT_GE(calls_, 3) << "filter";
+    calls_ = 0;
+    rarest.update(grid_, 9, 2, colours, acceptAll, updates);
+    EXPECT_EQ(calls_, 3) << "changes";
+    calls_ = 0;
+    rarest.updateSome(grid_, 9, 2, colours, agents, updates);
+    EXPECT_GE(calls_, 3) << "filter of some";
+}
+
 TEST_F(AiMisuse, OfSightByItsFilterOrForWhoDidNotLookIsAsserted) {
     Sight<float> sight;
     EXPECT_THROW(static_cast<void>(sight.seenBy(0)), BrokenAssert);
@@ -113,6 +134,32 @@ TEST(ZonesMisuse, OfWhatWasRemovedChangesNobodyWithoutAssertions) {
     zones.zonesAt({0, 0, 0}, found);
     EXPECT_EQ(found, std::vector{first});
     EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 9 : 0);
+}
+
+TEST(RarestColourMisuse, OfItsUpdatesByTheirCallbacksChangesNothingWithoutAssertions) {
+    const CaughtAsserts caught;
+    Grid<float> grid;
+    std::vector<ProxyId> agents;
+    for (int i = 0; i < 3; ++i) {
+        agents.push_back(grid.add(makeBox<float>(i, 0, 0, i + 1, 1, 1)));
+    }
+    RarestColour<float> rarest;
+    const std::vector<std::uint32_t> zeros(3);
+    const auto updates = [&](ProxyId) {
+        std::vector<std::uint32_t> others = zeros;
+        rarest.update(grid, 9, 32, others);
+        rarest.updateSome(grid, 9, 32, others, agents);
+        EXPECT_EQ(others, zeros);
+        return true;
+    };
+    const std::vector<std::uint32_t> ones(3, 1);
+    std::vector<std::uint32_t> colours = zeros;
+    rarest.update(grid, 9, 2, colours, acceptAll, updates);
+    EXPECT_EQ(colours, ones);
+    colours = zeros;
+    rarest.updateSome(grid, 9, 2, colours, agents, updates);
+    EXPECT_EQ(colours, ones);
+    EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 6 : 0);
 }
 
 }  // namespace
