@@ -9,6 +9,7 @@
 #include <broadphase/proxy_filter.hpp>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace hashphase {
 namespace {
@@ -48,7 +49,8 @@ ZoneId Zones<Scalar>::add(const Zone<Scalar>& zone) {
     auto index = static_cast<std::uint32_t>(slots_.size());
     if (freeSlots_.empty()) {
         detail::ensureCapacity(freeSlots_, slots_.size() + 1);  // so that remove() has room
-        slots_.push_back({zone, 0, {}, {}, {}, false});
+        static_assert(std::is_nothrow_move_constructible_v<Slot>, "else occupants() would dangle");
+        slots_.emplace_back(zone);
     } else {
         index = freeSlots_.back();
         slots_[index].zone = zone;

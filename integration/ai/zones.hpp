@@ -124,7 +124,8 @@ public:
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// The proxies that were in the zone at its last search, sorted by id. Valid until the next update().
+    /// The proxies that were in the zone at its last search, sorted by id. Valid until the next update(), also if
+    /// zones are added.
     [[nodiscard]] std::span<const ProxyId> occupants(ZoneId id) const;
 
     /// Finds the zones whose current shapes contain the point [m]. Replaces `found`, sorted by id. Finds nothing if
@@ -139,7 +140,16 @@ public:
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
 private:
+    /// Its moves are noexcept, whatever Eigen's are: so vectors move slots, and spans of occupants stay valid.
     struct Slot {
+        Slot() = default;
+        explicit Slot(const Zone<Scalar>& watched) : zone(watched) {}
+        Slot(const Slot&) = default;
+        Slot(Slot&&) noexcept = default;
+        Slot& operator=(const Slot&) = default;
+        Slot& operator=(Slot&&) noexcept = default;
+        ~Slot() = default;
+
         Zone<Scalar> zone;
         std::uint32_t generation = 0;    // odd while the slot has a zone
         std::vector<ProxyId> occupants;  // of the last search

@@ -13,9 +13,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -313,6 +315,23 @@ TYPED_TEST(AgentsTest, EnterStayInAndLeaveZonesAsBeforeWhereACopyOfTheZonesIsPut
         }
         frames.play(1000);
     }
+}
+
+TYPED_TEST(AgentsTest, StayInTheSpanOfTheirZoneWhileZonesAreAdded) {
+    for (int i = 0; i < 20; ++i) {
+        this->addPoint(static_cast<TypeParam>(i), 0, 0);
+    }
+    Zones<TypeParam> zones;
+    const ZoneId id = zones.add({SphereRegion<TypeParam>({0, 0, 0}, TypeParam(9.5))});
+    zones.update(this->grid);
+    const std::span<const ProxyId> occupants = zones.occupants(id);
+    ASSERT_EQ(occupants.size(), 10U);
+    const std::vector<ProxyId> expected(occupants.begin(), occupants.end());
+    for (int i = 0; i < 100; ++i) {
+        static_cast<void>(zones.add({SphereRegion<TypeParam>({0, 0, 0}, 1)}));
+        ASSERT_EQ(zones.occupants(id).data(), occupants.data()) << i << " zones more";
+    }
+    EXPECT_TRUE(std::equal(occupants.begin(), occupants.end(), expected.begin(), expected.end()));
 }
 
 }  // namespace
