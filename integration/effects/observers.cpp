@@ -2,7 +2,9 @@
 #include <integration/effects/observers.hpp>
 
 #include <broadphase/core/on_failure.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/core/raise.hpp>
+#include <broadphase/diagnostics.hpp>
 #include <integration/effects/detail/parts.hpp>
 #include <integration/effects/observers_frame.inl>
 
@@ -22,6 +24,12 @@ Observers<Scalar>::~Observers() = default;
 
 template <class Scalar>
 void Observers<Scalar>::declare(const SceneEffects& effects) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "Observers::declare() was called from within observe(). Call it after that "
+                     "returns.");
+    if (detail::QueryScope::isWithin(this)) {
+        return;
+    }
     if (const std::string error = effectsError(effects); !error.empty()) {
         detail::raiseInvalidArgument(error);
     }

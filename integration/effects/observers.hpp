@@ -18,6 +18,7 @@
 // Failure     If observe() throws std::bad_alloc, the visible set may be incomplete, colours may be old, and
 //             radarCounts() may be empty. zoneEvents() has all events or none. The next frames work, and report
 //             missed events.
+// Misuse      Asserted: callbacks of observe() do not call declare(). Without assertions, such a call does nothing.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -25,6 +26,7 @@
 #include <broadphase/parallel_for.hpp>
 #include <integration/ai/zones.hpp>
 #include <integration/culling/culler.hpp>
+#include <integration/effects/detail/phase_watch.hpp>
 #include <integration/effects/export.hpp>
 #include <integration/effects/scene_cost.hpp>
 #include <integration/effects/scene_effects.hpp>
@@ -122,8 +124,8 @@ public:
     void forgetProxies() noexcept;
 
     /// Calls `watch` with the effect's name after each phase, for a profiler. To stop the calls, pass an empty
-    /// function.
-    void watchPhases(std::function<void(std::string_view)> watch) { watch_ = std::move(watch); }
+    /// function. `watch` may call watchPhases(): the new function is called from the next phase on.
+    void watchPhases(std::function<void(std::string_view)> watch) { watch_.set(std::move(watch)); }
 
     // --- Results of the last frame ---------------------------------------------------------------
 
@@ -196,7 +198,7 @@ private:
     std::optional<Point> interest_;
     SceneCost cost_;   // of the last frame
     SceneCost asked_;  // of picks and selections since the last frame
-    std::function<void(std::string_view)> watch_;
+    detail::PhaseWatch watch_;
 
     std::unique_ptr<Culling> culling_;
     std::unique_ptr<Proximity> proximity_;

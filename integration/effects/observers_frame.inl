@@ -5,6 +5,7 @@
 
 #include <integration/effects/observers.hpp>
 
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/position_region.hpp>
 #include <integration/ai/radar.hpp>
 #include <integration/ai/rarest_colour.hpp>
@@ -96,6 +97,7 @@ struct Observers<Scalar>::RadarWatch {
 template <class Scalar>
 const SceneCost& Observers<Scalar>::observe(const Scene& scene, Scalar moved,
                                             ParallelFor parallelFor) {
+    const detail::QueryScope scope(this);
     cost_ = asked_;
     asked_ = {};
     if (zones_) {
@@ -110,9 +112,7 @@ const SceneCost& Observers<Scalar>::observe(const Scene& scene, Scalar moved,
     for (const Phase& phase : phases_) {
         if (wanted.contains(phase.effect)) {
             (this->*phase.run)(scene, moved, parallelFor);
-            if (watch_) {
-                watch_(nameOf(phase.effect));
-            }
+            watch_.tell(nameOf(phase.effect));
         }
     }
     presentBefore_ = scene.present;

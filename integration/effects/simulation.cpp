@@ -8,7 +8,9 @@
 
 #include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/on_failure.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/core/raise.hpp>
+#include <broadphase/diagnostics.hpp>
 #include <integration/effects/detail/parts.hpp>
 #include <integration/effects/detail/simulation_parts.hpp>
 
@@ -41,6 +43,12 @@ Simulation<Scalar>::~Simulation() = default;
 
 template <class Scalar>
 void Simulation<Scalar>::declare(const SceneEffects& effects) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "Simulation::declare() was called from within advance(). Call it after that "
+                     "returns.");
+    if (detail::QueryScope::isWithin(this)) {
+        return;
+    }
     if (const std::string error = simulationError(effects); !error.empty()) {
         detail::raiseInvalidArgument(error);
     }
@@ -303,7 +311,7 @@ void Simulation<Scalar>::setPosition(BodyId id, const Point& position) {
 template <class Scalar>
 void Simulation<Scalar>::watchPhases(std::function<void(std::string_view)> watch) {
     observers_.watchPhases(watch);
-    watch_ = std::move(watch);
+    watch_.set(std::move(watch));
 }
 
 template <class Scalar>

@@ -20,12 +20,14 @@
 //             pairs as born. If add() or remove() fails, nothing has changed.
 // Units       metres, seconds
 // Misuse      Asserted: ids are valid, and time steps are finite and not negative. Without assertions, invalid ids
-//             throw std::out_of_range.
+//             throw std::out_of_range. Asserted: callbacks of advance() do not call declare(). Without assertions,
+//             such a call does nothing.
 
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/grid.hpp>
 #include <broadphase/pairs.hpp>
 #include <broadphase/parallel_for.hpp>
+#include <integration/effects/detail/phase_watch.hpp>
 #include <integration/effects/export.hpp>
 #include <integration/effects/observers.hpp>
 #include <integration/effects/scene_cost.hpp>
@@ -151,7 +153,8 @@ public:
     [[nodiscard]] std::vector<std::string_view> phases() const;
 
     /// Calls `watch` with the phase's name after each phase, for a profiler. In the phase "observe", also calls
-    /// `watch` after each observing effect, with its name. To stop the calls, pass an empty function.
+    /// `watch` after each observing effect, with its name. To stop the calls, pass an empty function. `watch` may
+    /// call watchPhases(): the new function is called from the next phase on.
     void watchPhases(std::function<void(std::string_view)> watch);
 
     /// Lets two bodies bounce if they touch and approach each other. Use it for pairs from another broadphase.
@@ -298,7 +301,7 @@ private:
     bool changedOutside_ = true;  // changes since the last frame, by calls other than advance()
     SceneCost cost_;
     SceneCost between_;  // work since the last frame, part of the next frame's cost
-    std::function<void(std::string_view)> watch_;
+    detail::PhaseWatch watch_;
 };
 
 /// Returns the reason why a Simulation cannot run the declaration: effectsError(), or an effect that runs only in

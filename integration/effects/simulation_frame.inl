@@ -7,6 +7,7 @@
 #include <integration/effects/detail/simulation_parts.hpp>
 
 #include <broadphase/core/on_failure.hpp>
+#include <broadphase/core/query_scope.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,7 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
     HASHPHASE_ASSERT(seconds >= 0 && std::isfinite(seconds),
                      "Simulation::advance(): the time step is negative, NaN or infinite. Pass a "
                      "finite time of 0 s or more.");
+    const detail::QueryScope scope(this);
     if (pairing_ && pairing_->isSpent) {
         pairing_ = nullptr;
         stockIsStale_ = true;
@@ -31,9 +33,7 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
     const detail::OnFailure recovered([&] { recover(); });
     for (const Phase& phase : phases_) {
         (this->*phase.run)();
-        if (watch_) {
-            watch_(phase.name);
-        }
+        watch_.tell(phase.name);
     }
     parallelFor_ = nullptr;
     changedOutside_ = false;
