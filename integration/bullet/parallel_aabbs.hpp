@@ -15,7 +15,7 @@
 // Shapes    getAabb() of shapes runs on several threads at the same time, even for one shape. Bullet's shapes allow
 //           this.
 // Callbacks All boxes are computed before the first box is set. If a callback of the pair cache moves an object, its
-//           box is updated in the next step.
+//           box is updated in the next step. Callbacks may add objects, and call updateAabbs().
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -38,12 +38,16 @@ public:
     [[nodiscard]] HASHPHASE_BULLET_EXPORT bool update(btCollisionWorld& world);
 
 private:
-    void compute(btCollisionWorld& world, int number);
-    void dropSkipped(btCollisionWorld& world);
+    struct Boxes {
+        std::vector<btBroadphaseProxy*> proxies;  // the proxy of each box
+        std::vector<btVector3> mins;
+        std::vector<btVector3> maxs;
+    };
 
-    std::vector<btBroadphaseProxy*> proxies_;  // the proxy of each box
-    std::vector<btVector3> mins_;
-    std::vector<btVector3> maxs_;
+    static void compute(btCollisionWorld& world, int number, Boxes& boxes);
+    static void dropSkipped(btCollisionWorld& world, Boxes& boxes);
+
+    Boxes boxes_;  // scratch; empty while update() runs
 };
 
 }  // namespace detail::inline HASHPHASE_BULLET_NAMESPACE

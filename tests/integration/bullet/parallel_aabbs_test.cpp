@@ -4,6 +4,7 @@
 
 #include <integration/bullet/parallel_aabbs.hpp>
 #include <tests/integration/bullet/broadphases.hpp>
+#include <tests/integration/bullet/callbacks.hpp>
 #include <tests/integration/bullet/dynamics.hpp>
 #include <tests/support/threaded_for.hpp>
 
@@ -18,6 +19,7 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <deque>
 #include <limits>
 #include <memory>
@@ -235,6 +237,49 @@ TEST(ParallelAabbs, FollowSoftBodies) {
     }
     own.world().removeSoftBody(one.get());
     bullets.world().removeSoftBody(other.get());
+}
+
+// The update within the callback sets other boxes: one more, and none of an object that sleeps.
+TEST(ParallelAabbs, MayBeUpdatedByACallbackThatAddsAnObject) {
+    SpatialHashConfig config;
+    config.parallelFor = serialFor;
+    config.eagerGroups = btBroadphaseProxy::CharacterFilter;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    SpatialHashBroadphase broadphase(config);
+    btSphereShape ball(1);
+    std::array<btCollisionObject, 6> objects;
+    ParallelAabbs<btCollisionWorld> world(&dispatcher, &broadphase, &configuration);
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        objects[i].setCollisionShape(&ball);
+        objects[i].setWorldTransform(placeAt({10 * static_cast<btScalar>(i), 0, 0}));
+        world.addCollisionObject(&objects[i], i == 0 ? btBroadphaseProxy::CharacterFilter
+                                                     : btBroadphaseProxy::DefaultFilter);
+    }
+    world.updateAabbs();
+    world.removeCollisionObject(&objects.back());
+
+    PairJournal journal;
+    journal.onBirth = [&](btBroadphaseProxy*, btBroadphaseProxy*) {
+        world.addCollisionObject(&objects.back());
+        world.setForceUpdateAllAabbs(false);
+        world.updateAabbs();
+    };
+    broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&journal);
+    objects[0].setWorldTransform(objects[1].getWorldTransform());
+    for (std::size_t i = 1; i < objects.size(); ++i) {
+        objects[i].setWorldTransform(placeAt({10 * static_cast<btScalar>(i), 5, 0}));
+    }
+    objects[2].setActivationState(ISLAND_SLEEPING);
+    world.updateAabbs();
+    broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(nullptr);
+    EXPECT_EQ(journal.all.size(), 1U);
+    for (const btCollisionObject& object : objects) {
+        const btBroadphaseProxy& proxy = *object.getBroadphaseHandle();
+        const btVector3 centre = (proxy.m_aabbMin + proxy.m_aabbMax) / 2;
+        EXPECT_LT(centre.distance(object.getWorldTransform().getOrigin()), btScalar(0.01))
+            << "object " << &object - objects.data();
+    }
 }
 
 }  // namespace
