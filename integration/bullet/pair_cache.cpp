@@ -99,7 +99,7 @@ btBroadphasePair* PairCache::addAcceptedPair(btBroadphaseProxy* proxy0, btBroadp
 }
 
 void PairCache::checkMayChange() const {
-    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+    HASHPHASE_ASSERT(!detail::QueryScope::forbidsChanges(this),
                      "A PairCache was changed from within its filter. Note the change, and make it "
                      "after the step.");
 }
@@ -128,6 +128,8 @@ btBroadphasePair* PairCache::add(const BulletProxyPair& proxies) {
     if (ghosts_ == nullptr) {
         return &pairs_[index];
     }
+    // Here, and wherever else others are called: a snapshot refuses to be used from within.
+    const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
     ghosts_->addOverlappingPair(pair.m_pProxy0, pair.m_pProxy1);
     return findPair(pair.m_pProxy0, pair.m_pProxy1);
 }
@@ -167,6 +169,7 @@ void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing fre
         retire(removed, ids, dispatcher);
     }
     if (ghosts_ != nullptr) {
+        const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
         ghosts_->removeOverlappingPair(removed.m_pProxy0, removed.m_pProxy1, dispatcher);
     }
     return removed.m_internalInfo1;
@@ -211,6 +214,7 @@ void PairCache::cleanOverlappingPair(btBroadphasePair& pair, btDispatcher* dispa
     if (pair.m_algorithm == nullptr || dispatcher == nullptr) {
         return;
     }
+    const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
     btCollisionAlgorithm* algorithm = std::exchange(pair.m_algorithm, nullptr);
     algorithm->~btCollisionAlgorithm();
     dispatcher->freeCollisionAlgorithm(algorithm);

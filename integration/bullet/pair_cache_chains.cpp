@@ -222,6 +222,7 @@ void PairCache::tellGhostsAgain(std::uint64_t ids, btDispatcher* dispatcher) {
     }
     btBroadphaseProxy* const proxy0 = pairs_[static_cast<int>(index)].m_pProxy0;
     btBroadphaseProxy* const proxy1 = pairs_[static_cast<int>(index)].m_pProxy1;
+    const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
     ghosts_->removeOverlappingPair(proxy0, proxy1, dispatcher);
     if (ghosts_ != nullptr && ids_.find(ids) != kNone) {
         ghosts_->addOverlappingPair(proxy0, proxy1);

@@ -5,6 +5,7 @@
 #include <integration/bullet/world_snapshot.hpp>
 
 #include <integration/bullet/worlds_broadphase.hpp>
+#include <tests/integration/bullet/callbacks.hpp>
 #include <tests/integration/bullet/pool_world.hpp>
 
 #include <BulletCollision/CollisionDispatch/btConvexConvexAlgorithm.h>
@@ -17,8 +18,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <new>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -219,6 +224,96 @@ TEST(WorldSnapshot, RefusesOneOfManyWorlds) {
     EXPECT_EQ(snapshot.save(world, worlds.world(0)),
               "The broadphase is a world of a WorldsBroadphase, which snapshots do not support. "
               "Use a SpatialHashBroadphase for the world.");
+}
+
+void expectRefusalsWithinCallbacks(const std::vector<std::string>& faults) {
+    EXPECT_FALSE(faults.empty());
+    for (const std::string& fault : faults) {
+        EXPECT_EQ(fault,
+                  "The snapshot was used from a callback of the broadphase or of its pair cache. "
+                  "Use it between steps.");
+    }
+}
+
+// Between calculations: a proxy goes, a shape changes, the program removes and adds pairs.
+TEST(WorldSnapshot, RefusesCallsWithinGhostCallbacks) {
+    using Change = std::function<void(FewBodies&, const btBroadphasePair&)>;
+    const std::array<Change, 5> changes{
+        [](FewBodies& few, const btBroadphasePair& pair) {
+            few.world.refreshBroadphaseProxy(
+                static_cast<btCollisionObject*>(pair.m_pProxy0->m_clientObject));
+        },
+        [](FewBodies& few, const btBroadphasePair& pair) {
+            few.broadphase.shapeChanged(pair.m_pProxy0, &few.dispatcher);
+        },
+        [](FewBodies& few, const btBroadphasePair& pair) {
+            few.cache.removeOverlappingPairsContainingProxies(std::span(&pair.m_pProxy0, 1),
+                                                              &few.dispatcher);
+        },
+        [](FewBodies& few, const btBroadphasePair& pair) {
+            few.cache.removeOverlappingPair(pair.m_pProxy0, pair.m_pProxy1, &few.dispatcher);
+        },
+        [](FewBodies& few, const btBroadphasePair& pair) {
+            few.cache.removeOverlappingPair(pair.m_pProxy0, pair.m_pProxy1, &few.dispatcher);
+            few.cache.addOverlappingPair(pair.m_pProxy0, pair.m_pProxy1);
+        }};
+    for (const Change& change : changes) {
+        FewBodies few;
+        ASSERT_GT(few.cache.getNumOverlappingPairs(), 0);
+        const btBroadphasePair pair = few.cache.getOverlappingPairArray()[0];
+        WorldSnapshot snapshot;
+        std::vector<std::string> faults;
+        PairJournal journal;
+        journal.onBirth = [&](btBroadphaseProxy*, btBroadphaseProxy*) {
+            faults.push_back(few.save(snapshot));
+        };
+        journal.onDeath = journal.onBirth;
+        few.cache.setInternalGhostPairCallback(&journal);
+        change(few, pair);
+        few.cache.setInternalGhostPairCallback(nullptr);
+        expectRefusalsWithinCallbacks(faults);
+        EXPECT_EQ(few.save(snapshot), "");
+    }
+}
+
+TEST(WorldSnapshot, RefusesCallsWithinCallbacksOfContactsThatEnd) {
+    static FewBodies* where;
+    static std::vector<std::string>* noted;
+    FewBodies few;
+    std::vector<std::string> faults;
+    where = &few;
+    noted = &faults;
+    gContactEndedCallback = [](btPersistentManifold* const& /*manifold*/) {
+        WorldSnapshot snapshot;
+        noted->push_back(where->save(snapshot));
+    };
+    const btCollisionObjectArray& objects = few.world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        few.cache.cleanProxyFromPairs(objects[i]->getBroadphaseHandle(), &few.dispatcher);
+    }
+    gContactEndedCallback = nullptr;
+    expectRefusalsWithinCallbacks(faults);
+}
+
+TEST(WorldSnapshot, RefusesToBeRestoredByACallbackWhileItIsRestored) {
+    FewBodies few;
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    const std::uint64_t state = wholeState(few.world);
+    for (const std::size_t added : {6U, 7U, 8U}) {
+        few.add(added, few.pool[0]->getWorldTransform().getOrigin());
+    }
+    few.world.stepSimulation(btScalar(1) / 60, 0);
+    std::vector<std::string> faults;
+    PairJournal journal;
+    journal.onDeath = [&](btBroadphaseProxy*, btBroadphaseProxy*) {
+        faults.push_back(few.restoreWithout(snapshot));
+    };
+    few.cache.setInternalGhostPairCallback(&journal);
+    EXPECT_EQ(few.restoreWithout(snapshot), "");
+    few.cache.setInternalGhostPairCallback(nullptr);
+    expectRefusalsWithinCallbacks(faults);
+    EXPECT_EQ(wholeState(few.world), state);
 }
 
 TEST(WorldSnapshot, IsNotWrittenWhereSomethingIsNotInTheWorld) {
