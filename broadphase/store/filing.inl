@@ -293,6 +293,7 @@ void Store<Scalar>::endUpdate(UpdateCost& done) noexcept {
 
 template <class Scalar>
 void Store<Scalar>::forgetLastUpdate() noexcept {
+    beforeChange();  // which may list others, and in another order
     forEachListed([this](std::uint32_t proxyIndex) {
         if (proxies.isAlive(proxyIndex)) {
             markChanged(proxyIndex);

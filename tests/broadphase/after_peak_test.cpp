@@ -222,6 +222,45 @@ TYPED_TEST(AfterAPeak, ForEachMayChangeTheGrid) {
     EXPECT_EQ(world.grid.validate(), "");
 }
 
+/// Few that are left after a peak, and whose changes a query will have filed when their Pairs begin.
+template <class Scalar>
+struct FewLeft : Population<Scalar> {
+    static constexpr std::size_t kCount = 200;
+
+    FewLeft() : Population<Scalar>(GridConfig{.slack = 0.1}) {
+        this->addMany(2000, boxesIn<Scalar>(0, 10, 0.5, 1));
+        this->update();
+        leave(*this, kCount, Left::first);
+        this->update();
+    }
+    [[nodiscard]] bool isFresh() const { return this->grid.store().tables.isFresh.load(); }
+    /// The first update of the Pairs begins those of brute force.
+    void expectAllBegin(Pairs<Scalar>& pairs) const {
+        const PairChanges changes = pairs.update();
+        const std::vector<ProxyPair> born(changes.born.begin(), changes.born.end());
+        EXPECT_GT(born.size(), 100U);
+        EXPECT_EQ(differences(born, pairsByBruteForce<Scalar>(this->proxies)), "");
+        EXPECT_EQ(pairs.validate(), "");
+    }
+};
+
+TYPED_TEST(AfterAPeak, PairsBeginOfAllThatMoveWithinTheirSlack) {
+    FewLeft<TypeParam> world;
+    UpdateCost cost;
+    for (int update = 0; update < 40; ++update) {
+        world.tremble();
+        cost = world.grid.update();
+    }
+    ASSERT_EQ(cost.resting, world.proxies.size());
+    world.tremble();
+    world.grid.expectQueries(1000);
+    ASSERT_TRUE(world.grid.store().isSparse());
+    ASSERT_TRUE(world.isFresh());
+    Pairs<TypeParam> pairs(world.grid);
+    EXPECT_FALSE(world.isFresh());
+    world.expectAllBegin(pairs);
+}
+
 TYPED_TEST(AfterAPeak, RadiusSearchesReadAndHoldWhatIsLeft) {
     Population<TypeParam> world;
     world.addMany(20000, anyBox<TypeParam>, 3);
