@@ -61,6 +61,7 @@ std::uint32_t Store<Scalar>::add(const Box& box, bool restsAtOnce, const ProxyGr
     }
     Record& record = proxies.records[proxyIndex];
     ++record.generation;
+    record.before = nanBox<Scalar>();  // not that of one removed in this frame
     record.residency = Residency::mobile;
     proxies.listMobile(proxyIndex);
     if (settling != nullptr && proxyIndex < settling->tremors.size()) {

@@ -261,6 +261,22 @@ TYPED_TEST(AfterAPeak, PairsBeginOfAllThatMoveWithinTheirSlack) {
     world.expectAllBegin(pairs);
 }
 
+TYPED_TEST(AfterAPeak, PairsBeginOfThoseThatGetTheIndicesOfRemovedOnes) {
+    FewLeft<TypeParam> world;
+    const std::vector<Placed<TypeParam>> before = world.proxies;
+    leave(world, world.kCount / 2, Left::last);
+    world.tremble();
+    world.grid.expectQueries(1000);
+    ASSERT_TRUE(world.grid.store().isSparse());
+    ASSERT_TRUE(world.isFresh());
+    Pairs<TypeParam> pairs(world.grid);
+    for (std::size_t i = 0; i < world.kCount / 2; ++i) {
+        const ProxyId id = world.add(before[i].box);
+        ASSERT_LT(id.index, world.kCount);
+    }
+    world.expectAllBegin(pairs);
+}
+
 TYPED_TEST(AfterAPeak, RadiusSearchesReadAndHoldWhatIsLeft) {
     Population<TypeParam> world;
     world.addMany(20000, anyBox<TypeParam>, 3);
