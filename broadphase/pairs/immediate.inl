@@ -193,6 +193,7 @@ void askAgainAboutMany(PairState<Scalar>& pairs, PairFilter filter, const IsName
             }
         }
     }
+    pairs.store.mendTables();  // or a query of the filter would, while they are read
     forEachKnown(pairs, [&](PairKey key) {
         if (isNamed(firstIndex(key)) || isNamed(secondIndex(key))) {
             listAgain(pairs, key);

@@ -314,6 +314,57 @@ TEST(RefusedPileOfSweeps, AsksOnceAboutTwoThatSweep) {
     EXPECT_GT(world.asked().size(), 20'000U);
 }
 
+// What had settled goes in the update from which on the pairs are remembered, after which the mobile ones are to be
+// filed again: by the first query, which here would be one of the filter's.
+TEST(RefusedPilesAfterSettledOnes, AreAskedAboutAgainByAFilterThatQueries) {
+    constexpr int kPiles = 5;
+    constexpr int kPerPile = 80;  // so few that they are asked about at once
+    const GridConfig config{.cellSize = 2, .slack = 0.1};
+    Grid<float> grid(config);
+    Pairs<float> pairs(grid);
+    Random random(0x5eed0d32);
+    const auto placed = [](double x, double y) {
+        return boxAround<float>({x, y, 0.5}, {0.5, 0.5, 0.5});
+    };
+    std::vector<ProxyId> settled;
+    for (int i = 0; i < 10; ++i) {
+        settled.push_back(grid.add(placed(10 * i, 100)));
+    }
+    for (int update = 0; update < 60; ++update) {
+        for (std::size_t i = 0; i < settled.size(); ++i) {
+            const auto x = 10 * static_cast<double>(i);
+            grid.move(settled[i], shifted(random, placed(x, 100), 0.01));
+        }
+        static_cast<void>(pairs.update());
+    }
+    ASSERT_EQ(pairs.lastCost().grid.resting, settled.size());
+    std::vector<ProxyId> piled;
+    for (int i = 0; i < kPiles * kPerPile; ++i) {
+        const int pile = i / kPerPile;
+        piled.push_back(grid.add(placed(20 * pile + 0.7, 0.7)));
+    }
+    for (const ProxyId id : settled) {
+        grid.remove(id);
+    }
+    static_cast<void>(pairs.update([](ProxyId, ProxyId) { return false; }));
+    ASSERT_TRUE(pairs.remembersPairs());
+    ASSERT_TRUE(grid.store().tables.mustRefileMobile.load());
+
+    for (std::size_t i = 0; i < piled.size(); i += 10) {
+        grid.remove(piled[i]);
+    }
+    constexpr std::size_t kLeft = kPerPile - kPerPile / 10;
+    constexpr std::size_t kPairs = kPiles * (kLeft * (kLeft - 1) / 2);
+    static_assert(kPairs > detail::PairState<float>::kPart);
+    const PairChanges changes = pairs.refilterAll([&](ProxyId, ProxyId) {
+        grid.expectQueries(1);
+        return true;
+    });
+    EXPECT_EQ(changes.born.size(), kPairs);
+    EXPECT_EQ(pairs.count(), kPairs);
+    EXPECT_EQ(pairs.validate(), "");
+}
+
 // A pile of pairs is asked in parts once; what follows is as fast as ever.
 TEST_F(RefusedPile, WhoseRefusedAreFewRemembersThem) {
     addMany(300);
