@@ -277,7 +277,7 @@ public:
     void releaseUnusedMemory() noexcept;
 
     /// Returns a sentence about a broken invariant of the grid, sweeps, pairs or own PairCache; empty if all hold.
-    /// Also checked:
+    /// Call it after calculateOverlappingPairs(). Also checked:
     /// - The own PairCache has as many pairs as the broadphase, unless the program has removed pairs.
     [[nodiscard]] std::string validate() const;
 

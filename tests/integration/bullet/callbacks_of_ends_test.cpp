@@ -254,6 +254,8 @@ TEST(CallbacksOfEnds, MayDestroyOthersWhilePairsLeaveACacheThatDefersRemoval) {
     EXPECT_EQ(freed, std::vector<Uids>{Uids(1, 2)});
     ASSERT_EQ(boxes.pairCount(), 1) << "the one that the destroyed proxy has no part in";
     EXPECT_EQ(boxes.list(), std::vector<Uids>{Uids(3, 5)});
+    boxes.over->calculateOverlappingPairs(&dispatcher);
+    EXPECT_EQ(boxes.list(), std::vector<Uids>{Uids(3, 5)});
     EXPECT_EQ(boxes.hash().validate(), "");
 }
 
