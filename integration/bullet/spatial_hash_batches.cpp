@@ -306,6 +306,9 @@ void SpatialHashBroadphase::removePairsOf(std::span<btBroadphaseProxy* const> pr
                                           btDispatcher* dispatcher) {
     if (watch_.cache == nullptr) {
         for (btBroadphaseProxy* proxy : proxies) {
+            if (dispatcher != nullptr) {
+                freeCut(proxy, dispatcher);
+            }
             pairCache_->removeOverlappingPairsContainingProxy(proxy, dispatcher);
         }
         return;

@@ -276,9 +276,8 @@ public:
     /// O(grid().indexLimit()), plus a copy of the remaining data.
     void releaseUnusedMemory() noexcept;
 
-    /// Returns a sentence about a broken invariant of the grid, sweeps, pairs or own PairCache; empty if all hold.
-    /// Call it after calculateOverlappingPairs(). Also checked:
-    /// - The own PairCache has as many pairs as the broadphase, unless the program has removed pairs.
+    /// Returns a sentence about a broken invariant of the grid, sweeps, pairs or own PairCache (as many pairs as the
+    /// broadphase, unless the program has removed pairs). Empty if all hold. Call it after calculateOverlappingPairs().
     [[nodiscard]] std::string validate() const;
 
 private:
@@ -399,6 +398,7 @@ private:
     [[nodiscard]] bool doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const;
     using IsPair = FunctionRef<bool(const btBroadphasePair& pair)>;
     void removeDeferred(IsPair isPair, btDispatcher* dispatcher);
+    void freeCut(const btBroadphaseProxy* proxy, btDispatcher* dispatcher);
     [[nodiscard]] bool isAccepted(const btBroadphasePair& pair) const {
         return pairCache_->needsBroadphaseCollision(pair.m_pProxy0, pair.m_pProxy1);
     }
@@ -436,6 +436,7 @@ private:
     std::unique_ptr<PairCache> ownCache_;  // null if a cache was given
     detail::CacheWatch watch_{*this};      // watches the cache if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
+    btBroadphasePairArray cut_;  // of a cache that defers removal: pairs yet to be freed
     detail::GroupKinds groupKinds_;
     detail::GroupKinds::Set changedKinds_ = 0;  // kinds of proxies that changed since the update
     std::vector<std::uint64_t> seen_;           // one bit per index: groups read since the update

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -256,6 +257,38 @@ TEST(CallbacksOfEnds, MayDestroyOthersWhilePairsLeaveACacheThatDefersRemoval) {
     EXPECT_EQ(boxes.list(), std::vector<Uids>{Uids(3, 5)});
     boxes.over->calculateOverlappingPairs(&dispatcher);
     EXPECT_EQ(boxes.list(), std::vector<Uids>{Uids(3, 5)});
+    EXPECT_EQ(boxes.hash().validate(), "");
+}
+
+TEST(CallbacksOfEnds, MayDestroyProxiesOfPairsThatAreYetToLeaveACacheThatDefersRemoval) {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    std::vector<Uids> freed;
+    AnyBoxes boxes(std::make_unique<btSortedOverlappingPairCache>());
+    for (const double x : {0.0, 0.5, 0.6}) {
+        boxes.create(cubeAt(btScalar(x)));
+    }
+    boxes.step();
+    const NotedAlgorithm::Act destroyTheOther = [&](const Uids& ended) {
+        if (freed.size() == 1) {
+            const std::size_t other = ended == Uids(1, 2) ? 2 : 1;
+            boxes.over->destroyProxy(boxes.proxies[other], &dispatcher);
+            EXPECT_EQ(freed.size(), 2U) << "before its object may go";
+            boxes.proxies.erase(boxes.proxies.begin() + static_cast<std::ptrdiff_t>(other));
+        }
+    };
+    for (const std::size_t other : {1U, 2U}) {
+        btBroadphasePair* const pair =
+            boxes.pairCache().findPair(boxes.proxies[0], boxes.proxies[other]);
+        ASSERT_NE(pair, nullptr);
+        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
+        pair->m_algorithm = new (memory) NotedAlgorithm(uidsOf(*pair), freed, destroyTheOther);
+    }
+    boxes.set(boxes.proxies[0], cubeAt(50));
+    boxes.over->calculateOverlappingPairs(&dispatcher);
+    EXPECT_EQ(freed.size(), 2U);
+    EXPECT_EQ(boxes.pairCount(), 0);
+    boxes.over->calculateOverlappingPairs(&dispatcher);
     EXPECT_EQ(boxes.hash().validate(), "");
 }
 
