@@ -15,6 +15,7 @@
 #include <integration/distributed/detail/parcels.hpp>
 #include <integration/distributed/rank_grid.hpp>
 
+#include <broadphase/core/raise.inl>
 #include <broadphase/diagnostics.hpp>
 #include <broadphase/geometry/padded_box.hpp>
 
@@ -335,10 +336,10 @@ void RankGrid<Scalar>::takeEntry(const Parcel& parcel, const Entry& entry) {
 template <class Scalar>
 void RankGrid<Scalar>::takeNew(const Parcel& parcel, const Entry& entry) {
     if (const ProxyId known = find(entry.object); !known.isNull()) {
-        throw RankError("The global id " + std::to_string(entry.object.value) +
+        detail::raise(RankError("The global id " + std::to_string(entry.object.value) +
                         " names two objects, one on rank " + std::to_string(homeOf(known)) +
                         " and one on rank " + std::to_string(parcel.rank) +
-                        ". Give each object an id of its own.");
+                        ". Give each object an id of its own."));
     }
     const ProxyId id = addProxy(entry.object, entry.now, entry.groups);
     marks_[id.index] = static_cast<std::uint16_t>(kNew | kHasBefore |
