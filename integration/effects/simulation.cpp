@@ -310,8 +310,8 @@ void Simulation<Scalar>::setPosition(BodyId id, const Point& position) {
 
 template <class Scalar>
 void Simulation<Scalar>::watchPhases(std::function<void(std::string_view)> watch) {
-    observers_.watchPhases(watch);
-    watch_.set(std::move(watch));
+    watch_.set(watch);
+    observers_.watchPhases(std::move(watch));
 }
 
 template <class Scalar>
