@@ -393,44 +393,6 @@ void SpatialHashBroadphase::catchUp(btDispatcher* dispatcher) {
     applyToCache(lists.died, lists.born, dispatcher);
 }
 
-// Caches with deferred removal ignore removeOverlappingPair() and keep duplicates; their user is to
-// sort the array, free what is doubled or no pair any more, and cut it off: at the end of a step what
-// is apart, after recacheFilter() what the filter refuses. The array is cut before anything is freed,
-// for callbacks may change it, and destroy proxies of pairs that are yet to be freed.
-void SpatialHashBroadphase::removeDeferred(IsPair isPair, btDispatcher* dispatcher) {
-    if (!pairCache_->hasDeferredRemoval()) {
-        return;
-    }
-    btBroadphasePairArray& pairs = pairCache_->getOverlappingPairArray();
-    pairs.quickSort(btBroadphasePairSortPredicate());
-    int kept = 0;
-    for (int i = 0; i < pairs.size(); ++i) {
-        const bool isDouble = kept > 0 && pairs[i] == pairs[kept - 1];
-        if (!isDouble && isPair(pairs[i])) {
-            pairs.swap(kept++, i);
-        } else {
-            cut_.push_back(pairs[i]);
-        }
-    }
-    pairs.resize(kept);
-    freeCut(nullptr, dispatcher);
-}
-
-// Of one proxy, or of all.
-void SpatialHashBroadphase::freeCut(const btBroadphaseProxy* proxy, btDispatcher* dispatcher) {
-    for (int i = 0; i < cut_.size();) {
-        btBroadphasePair pair = cut_[i];
-        if (proxy == nullptr || pair.m_pProxy0 == proxy || pair.m_pProxy1 == proxy) {
-            cut_.swap(i, cut_.size() - 1);
-            cut_.pop_back();
-            pairCache_->cleanOverlappingPair(pair, dispatcher);
-            i = 0;  // a callback may have freed others
-        } else {
-            ++i;
-        }
-    }
-}
-
 bool SpatialHashBroadphase::doMeet(const btBroadphaseProxy& a, const btBroadphaseProxy& b) const {
     if (sweeps_ == nullptr) {
         return overlaps(grid_.box(idOf(&a)), grid_.box(idOf(&b)));

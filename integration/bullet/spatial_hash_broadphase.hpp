@@ -436,7 +436,7 @@ private:
     std::unique_ptr<PairCache> ownCache_;  // null if a cache was given
     detail::CacheWatch watch_{*this};      // watches the cache if it is known to be a PairCache
     btOverlappingPairCache* pairCache_ = nullptr;
-    btBroadphasePairArray cut_;  // of a cache that defers removal: pairs yet to be freed
+    btBroadphasePairArray* cut_ = nullptr;  // of a cache that defers removal: pairs yet to be freed
     detail::GroupKinds groupKinds_;
     detail::GroupKinds::Set changedKinds_ = 0;  // kinds of proxies that changed since the update
     std::vector<std::uint64_t> seen_;           // one bit per index: groups read since the update
