@@ -18,6 +18,14 @@
 #include <vector>
 
 namespace hashphase {
+
+/// Loads at the end of a frame: of this rank, and the maximum and sum of all ranks, known from the next frame on.
+struct detail::FrameLoads {
+    std::array<std::uint64_t, 2> mine{};  // the load, and whether balanceNow() was called
+    std::array<std::uint64_t, 2> most{};
+    std::uint64_t sum = 0;
+};
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -50,6 +58,15 @@ public:
 private:
     double& seconds_;
     Clock::time_point since_;
+};
+
+/// What MPI reads and writes while space is cut: points [m] with their weights, and the cuts.
+struct CutBuffers {
+    using Point = std::array<double, 4>;
+
+    std::vector<Point> mine;
+    std::vector<Point> all;
+    std::vector<std::array<double, 2>> cuts;
 };
 
 struct NamedSetting {
@@ -109,7 +126,8 @@ DistributedGrid<Scalar>::DistributedGrid(MPI_Comm communicator, const Partition<
     : config_(config),
       ranks_(communicator, config.patience),
       exchange_(ranks_),
-      exceptionsAtFirst_(std::uncaught_exceptions()) {
+      exceptionsAtFirst_(std::uncaught_exceptions()),
+      loads_(std::make_shared<detail::FrameLoads>()) {
     agree(config, partition);
     if (!(config.rebalanceAbove >= 1) || !(config.patience >= 0)) {
         detail::raiseInvalidArgument(
@@ -330,17 +348,11 @@ double DistributedGrid<Scalar>::errorOfCuts() const noexcept {
 
 template <class Scalar>
 void DistributedGrid<Scalar>::rebalance() {
-    using Point = std::array<double, 4>;
-    struct Buffers {
-        std::vector<Point> mine;
-        std::vector<Point> all;
-        std::vector<std::array<double, 2>> cuts;
-    };
     const std::uint32_t perRank = samplesOfRank(ranks_.count());
     const bool isRoot = ranks_.rank() == 0;
     // As many of each rank, so that nobody has to ask how many; the rest weigh nothing.
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    const auto buffers = std::make_shared<Buffers>();
+    const auto buffers = std::make_shared<CutBuffers>();
     buffers->mine.resize(perRank, {kNan, kNan, kNan, 0});
     buffers->all.resize(isRoot ? std::size_t{perRank} * ranks_.count() : 0);
     buffers->cuts.resize(ranks_.count() - 1);
@@ -350,9 +362,9 @@ void DistributedGrid<Scalar>::rebalance() {
     const auto samples = here_->sampleLoad(std::min<std::size_t>(perRank, enough), load);
     std::transform(samples.begin(), samples.end(), buffers->mine.begin(),
                    [](const WeightedPoint<Scalar>& sample) {
-                       return Point{static_cast<double>(sample.at[0]),
-                                    static_cast<double>(sample.at[1]),
-                                    static_cast<double>(sample.at[2]), sample.weight};
+                       return CutBuffers::Point{static_cast<double>(sample.at[0]),
+                                                static_cast<double>(sample.at[1]),
+                                                static_cast<double>(sample.at[2]), sample.weight};
                    });
     MPI_Request request = MPI_REQUEST_NULL;
     ranks_.check(MPI_Igather(buffers->mine.data(), static_cast<int>(4 * perRank), MPI_DOUBLE,
@@ -364,7 +376,7 @@ void DistributedGrid<Scalar>::rebalance() {
     if (isRoot) {
         std::vector<WeightedPoint<Scalar>> points;
         points.reserve(buffers->all.size());
-        for (const Point& point : buffers->all) {
+        for (const CutBuffers::Point& point : buffers->all) {
             points.push_back(
                 {Vector3<double>(point[0], point[1], point[2]).template cast<Scalar>(), point[3]});
         }

@@ -64,6 +64,13 @@ struct DistributedCost {
     double pairSeconds = 0;       ///< applying other ranks' changes, and finding pairs
 };
 
+namespace detail {
+
+// Not within the class, which is exported: templates of it stay hidden.
+struct FrameLoads;
+
+}  // namespace detail
+
 /// This rank's objects, ghosts and pairs, and its messages to other ranks.
 template <class Scalar>
 class HASHPHASE_MPI_TEMPLATE_EXPORT DistributedGrid {
@@ -162,14 +169,8 @@ private:
     DistributedCost cost_;
     int exceptionsAtFirst_;
 
-    // Loads at the end of a frame: of this rank, and the maximum and sum of all ranks, known from the next frame on.
-    struct Loads {
-        std::array<std::uint64_t, 2> mine{};  // the load, and whether balanceNow() was called
-        std::array<std::uint64_t, 2> most{};
-        std::uint64_t sum = 0;
-    };
     std::optional<double> givenLoad_;
-    std::shared_ptr<Loads> loads_ = std::make_shared<Loads>();
+    std::shared_ptr<detail::FrameLoads> loads_;
     std::array<MPI_Request, 2> loadRequests_{MPI_REQUEST_NULL, MPI_REQUEST_NULL};
     bool isFirstToCut_ = false;  // the first frame must cut; equal on all ranks
     bool wantsCut_ = false;

@@ -4,9 +4,21 @@
 #include <broadphase/diagnostics.hpp>
 
 #include <algorithm>
+#include <deque>
 #include <utility>
 
 namespace hashphase::detail {
+
+/// What MPI reads and writes; kept where an exchange does not end.
+struct ExchangeBuffers {
+    std::vector<RankMessage> sent;
+    std::vector<MPI_Request> sends;
+    std::deque<RankMessage> received;  // none moves while MPI writes to it
+    std::vector<MPI_Request> receives;
+};
+
+SparseExchange::SparseExchange(Ranks& ranks)
+    : ranks_(ranks), buffers_(std::make_shared<ExchangeBuffers>()) {}
 
 SparseExchange::~SparseExchange() {
     if (isUnderWay_) {
@@ -19,7 +31,7 @@ void SparseExchange::start(std::span<const Parcel> parcels) {
                      "SparseExchange::start() was called during an exchange. Call finish() first.");
     ++number_;
     isUnderWay_ = true;
-    Buffers& buffers = *buffers_;
+    ExchangeBuffers& buffers = *buffers_;
     buffers = {};
     for (const Parcel& parcel : parcels) {
         for (std::size_t at = 0; at < parcel.bytes.size(); at += longestMessage_) {
@@ -28,7 +40,7 @@ void SparseExchange::start(std::span<const Parcel> parcels) {
             buffers.sent.push_back({parcel.rank, {piece.begin(), piece.end()}});
         }
     }
-    for (const Message& message : buffers.sent) {
+    for (const RankMessage& message : buffers.sent) {
         buffers.sends.push_back(MPI_REQUEST_NULL);
         ranks_.check(MPI_Issend(message.bytes.data(), static_cast<int>(message.bytes.size()),
                                 MPI_BYTE, static_cast<int>(message.rank), tag(),
@@ -85,7 +97,7 @@ void SparseExchange::receiveWhatHasCome() {
         }
         int size = 0;
         ranks_.check(MPI_Get_count(&status, MPI_BYTE, &size), "MPI_Get_count");
-        Message& received = buffers_->received.emplace_back();
+        RankMessage& received = buffers_->received.emplace_back();
         received.rank = static_cast<std::uint32_t>(status.MPI_SOURCE);
         received.bytes.resize(static_cast<std::size_t>(size));
         buffers_->receives.push_back(MPI_REQUEST_NULL);
@@ -101,8 +113,8 @@ void SparseExchange::joinPieces() {
     joined_.clear();
     parcels_.clear();
     std::stable_sort(buffers_->received.begin(), buffers_->received.end(),
-                     [](const Message& a, const Message& b) { return a.rank < b.rank; });
-    for (Message& piece : buffers_->received) {
+                     [](const RankMessage& a, const RankMessage& b) { return a.rank < b.rank; });
+    for (RankMessage& piece : buffers_->received) {
         if (joined_.empty() || joined_.back().rank != piece.rank) {
             joined_.push_back(std::move(piece));
         } else {
@@ -110,7 +122,7 @@ void SparseExchange::joinPieces() {
                                         piece.bytes.end());
         }
     }
-    for (const Message& message : joined_) {
+    for (const RankMessage& message : joined_) {
         parcels_.push_back({message.rank, message.bytes});
     }
     *buffers_ = {};

@@ -3,12 +3,13 @@
 # cmake -DNM=<nm> -DLIBRARIES=<file>[,<file>...] -P check_exports.cmake
 #
 # What the shared libraries export is hashphase's: no template of Eigen, Bullet or the standard library,
-# and of hashphase::detail only what code in public headers calls.
+# and of hashphase::detail only what code in public headers calls, or the program and the tests.
 
 cmake_minimum_required(VERSION 3.22)
 
 string(CONCAT offered
-       "(CameraInverse|FewPairs|FirstException::r|Kernels|Motions<|PairState<|Population<|QueryScope|Store<|Table<|"
+       "(CameraInverse|FewPairs|FirstException::r|Kernels|Motions<|PairState<|Population<|QueryScope|Ranks|"
+       "SparseExchange|Store<|Table<|"
        "firstContactExactly|instructionSet|isAvailable|kernels|nameOf|parallelForNoexcept|"
        "cameraError|exceptionOf|footprintError|frustum(Error|Planes)|hasRoomFor|"
        "raise(InvalidArgument|LengthError|OutOfRange)|reportBrokenAssert|reportMessage|"

@@ -13,16 +13,22 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace hashphase::detail {
 
+// Not within the class, which is exported: templates of them stay hidden.
+struct RankMessage {
+    std::uint32_t rank = 0;
+    std::vector<std::byte> bytes;
+};
+struct ExchangeBuffers;
+
 class HASHPHASE_MPI_EXPORT SparseExchange {
 public:
-    explicit SparseExchange(Ranks& ranks) : ranks_(ranks) {}
+    explicit SparseExchange(Ranks& ranks);
     SparseExchange(const SparseExchange&) = delete;
     SparseExchange& operator=(const SparseExchange&) = delete;
     ~SparseExchange();
@@ -47,18 +53,6 @@ public:
     static void setLongestMessage(std::size_t bytes) noexcept { longestMessage_ = bytes; }
 
 private:
-    struct Message {
-        std::uint32_t rank = 0;
-        std::vector<std::byte> bytes;
-    };
-    // What MPI reads and writes; kept where an exchange does not end.
-    struct Buffers {
-        std::vector<Message> sent;
-        std::vector<MPI_Request> sends;
-        std::deque<Message> received;  // none moves while MPI writes to it
-        std::vector<MPI_Request> receives;
-    };
-
     void receiveWhatHasCome();
     [[nodiscard]] bool areDone(std::vector<MPI_Request>& requests);
     void joinPieces();
@@ -72,10 +66,10 @@ private:
     std::uint64_t number_ =
         0;  // of the exchange; the next one may begin elsewhere before this one has ended here
     bool isUnderWay_ = false;
-    std::shared_ptr<Buffers> buffers_ = std::make_shared<Buffers>();
+    std::shared_ptr<ExchangeBuffers> buffers_;
     MPI_Request barrier_ = MPI_REQUEST_NULL;
     bool hasMet_ = false;  // at the barrier
-    std::vector<Message> joined_;
+    std::vector<RankMessage> joined_;
     std::vector<Parcel> parcels_;
 };
 
