@@ -13,6 +13,28 @@
 #include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+// cleanProxyFromPairs() of Bullet's caches goes on with a pair whose contacts it has ended, although who is
+// told of that may have changed the array. A second pass finds what a change has moved to the front.
+void endContactsOf(const btBroadphaseProxy& proxy, btOverlappingPairCache& cache,
+                   btDispatcher* dispatcher) {
+    btBroadphasePairArray& pairs = cache.getOverlappingPairArray();
+    for (bool isDone = false; !isDone;) {
+        isDone = true;
+        for (int i = 0; i < pairs.size(); ++i) {
+            const bool isOf = pairs[i].m_pProxy0 == &proxy || pairs[i].m_pProxy1 == &proxy;
+            if (isOf && pairs[i].m_algorithm != nullptr) {
+                btBroadphasePair pair = pairs[i];
+                pairs[i].m_algorithm = nullptr;
+                cache.cleanOverlappingPair(pair, dispatcher);
+                isDone = false;
+            }
+        }
+    }
+}
+
+}  // namespace
 
 // All births at once: should memory run out, there are none.
 void SpatialHashBroadphase::findPairsNow(const Proxy& proxy, btDispatcher* dispatcher) {
@@ -108,7 +130,7 @@ void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher*
     if (watch_.cache != nullptr) {
         watch_.cache->renewPairsContainingProxy(own, dispatcher);
     } else if (pairCache_->hasDeferredRemoval()) {
-        pairCache_->cleanProxyFromPairs(own, dispatcher);
+        endContactsOf(*own, *pairCache_, dispatcher);
     } else {
         renewPairsOfOtherCache(*own, dispatcher);
     }

@@ -292,6 +292,42 @@ TEST(CallbacksOfEnds, MayDestroyProxiesOfPairsThatAreYetToLeaveACacheThatDefersR
     EXPECT_EQ(boxes.hash().validate(), "");
 }
 
+TEST(CallbacksOfEnds, MayDestroyOthersWhileAShapeChangesInACacheThatDefersRemoval) {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    std::vector<Uids> freed;
+    AnyBoxes boxes(std::make_unique<btSortedOverlappingPairCache>());
+    for (const double x : {0.0, 0.5, 0.6, 0.7}) {
+        boxes.create(cubeAt(btScalar(x)));
+    }
+    boxes.step();
+    ASSERT_EQ(boxes.pairCount(), 6);
+    const NotedAlgorithm::Act destroyAnother = [&](const Uids& ended) {
+        if (freed.size() == 1) {
+            const std::size_t other = ended == Uids(1, 2) ? 2 : 1;
+            boxes.over->destroyProxy(boxes.proxies[other], &dispatcher);
+            boxes.proxies.erase(boxes.proxies.begin() + static_cast<std::ptrdiff_t>(other));
+        }
+    };
+    btBroadphasePairArray& pairs = boxes.pairCache().getOverlappingPairArray();
+    for (int i = 0; i < pairs.size(); ++i) {
+        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
+        pairs[i].m_algorithm = new (memory) NotedAlgorithm(uidsOf(pairs[i]), freed, destroyAnother);
+    }
+    boxes.hash().shapeChanged(boxes.proxies[0], &dispatcher);
+    // Three of the first proxy, and two more of the one that was destroyed.
+    EXPECT_EQ(freed.size(), 5U);
+    ASSERT_EQ(boxes.pairCount(), 3);
+    for (int i = 0; i < pairs.size(); ++i) {
+        const bool isOfFirst = uidsOf(pairs[i]).first == 1;
+        EXPECT_EQ(pairs[i].m_algorithm == nullptr, isOfFirst);
+        boxes.pairCache().cleanOverlappingPair(pairs[i], &dispatcher);
+    }
+    EXPECT_EQ(freed.size(), 6U);
+    boxes.over->calculateOverlappingPairs(&dispatcher);
+    EXPECT_EQ(boxes.hash().validate(), "");
+}
+
 TEST(WorldsBroadphase, HasTheBoundsOfOneBroadphaseWithTheSameBoxes) {
     ManyWorlds boxes(2);
     SpatialHashBroadphase one;
