@@ -42,7 +42,7 @@ std::optional<btScalar> ShapeTest::operator()(ProxyId id, const RayRegion<btScal
     if (!closest.hasHit()) {
         return std::nullopt;
     }
-    // Bullet ends a cast up to 2 cm in front of a shape, and so perhaps in front of the shape's box.
+    // Bullet ends a cast at about 1 cm from a shape, and so perhaps in front of the shape's box.
     return std::max(closest.m_closestHitFraction, ray.key(broadphase_->grid().box(id)));
 }
 
