@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/camera/frustum.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +23,16 @@ std::string frustumError(const Matrix4<Scalar>& viewProjection, const ScreenEdge
     if (viewProjection.row(3).isZero(0)) {
         return "The last row of the view-projection matrix is zero, so nothing is on the screen. "
                "Pass projection * view.";
+    }
+    // Bounds on the coefficients of all planes.
+    const auto farthestEdge =
+        std::max({Scalar(1), std::abs(left), std::abs(bottom), std::abs(right), std::abs(top)});
+    const Eigen::Matrix<Scalar, 4, 1> most =
+        viewProjection.cwiseAbs().template topRows<3>().colwise().maxCoeff().transpose() +
+        farthestEdge * viewProjection.row(3).cwiseAbs().transpose();
+    if (!most.allFinite()) {
+        return "The numbers of the view-projection matrix or of the rectangle are so large that "
+               "the planes of the view overflow. Pass projection * view, in metres.";
     }
     return {};
 }

@@ -57,6 +57,11 @@ TYPED_TEST(Frustum, SaysWhyItIsBad) {
     bad = good;
     bad.row(3).setZero();
     EXPECT_NE(frustumError(bad).find("last row"), std::string::npos);
+    bad.setConstant(std::numeric_limits<TypeParam>::max());
+    EXPECT_NE(frustumError(bad).find("overflow"), std::string::npos);
+    EXPECT_TRUE(frustumRegion(bad, DepthRange::zeroToOne).isEmpty());
+    bad /= 4;
+    EXPECT_EQ(frustumError(bad), "");
     auto rectangle = wholeScreen<TypeParam>();
     rectangle.min().x() = 2;
     EXPECT_NE(frustumError(good, rectangle).find("min() not above max()"), std::string::npos);
