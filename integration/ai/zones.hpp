@@ -107,6 +107,7 @@ public:
     void remove(ZoneId id);
 
     [[nodiscard]] bool contains(ZoneId id) const noexcept;
+    /// The zone as it was added or set. Valid until the next add() or set().
     [[nodiscard]] const Zone<Scalar>& zone(ZoneId id) const;
     [[nodiscard]] std::size_t size() const noexcept { return slots_.size() - freeSlots_.size(); }
 
