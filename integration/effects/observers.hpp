@@ -18,7 +18,8 @@
 // Failure     If observe() throws std::bad_alloc, the visible set may be incomplete, colours may be old, and
 //             radarCounts() may be empty. zoneEvents() has all events or none. The next frames work, and report
 //             missed events.
-// Misuse      Asserted: callbacks of observe() do not call declare(). Without assertions, such a call does nothing.
+// Misuse      Asserted: callbacks of observe() do not call declare() or observe(). Without assertions, such a call does
+//             nothing.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>

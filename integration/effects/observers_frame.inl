@@ -97,6 +97,12 @@ struct Observers<Scalar>::RadarWatch {
 template <class Scalar>
 const SceneCost& Observers<Scalar>::observe(const Scene& scene, Scalar moved,
                                             ParallelFor parallelFor) {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "Observers::observe() was called from within observe(). Call it after that "
+                     "returns.");
+    if (detail::QueryScope::isWithin(this)) {
+        return cost_;
+    }
     const detail::QueryScope scope(this);
     cost_ = asked_;
     asked_ = {};

@@ -190,9 +190,18 @@ std::uint32_t Simulation<Scalar>::takeIndex(const Aabb<Scalar>& box, Mobility mo
     return index;
 }
 
+template <class Scalar>
+void Simulation<Scalar>::checkIsBetweenFrames() const {
+    HASHPHASE_ASSERT(
+        !detail::QueryScope::isWithin(this),
+        "Simulation: a body was added, removed or set from within advance(). Change it "
+        "after that returns.");
+}
+
 // There is room for all before the grid has the body, so that a body is there wholly or not at all.
 template <class Scalar>
 BodyId Simulation<Scalar>::add(const Body<Scalar>& body) {
+    checkIsBetweenFrames();
     const std::size_t limit = positions_.size();
     detail::ensureCapacity(generations_, limit + 1);
     forEachColumn(body, [limit](auto& column, const auto& /*value*/) {
@@ -220,6 +229,7 @@ BodyId Simulation<Scalar>::add(const Body<Scalar>& body) {
 
 template <class Scalar>
 void Simulation<Scalar>::remove(BodyId id) {
+    checkIsBetweenFrames();
     const std::size_t body = indexOf(id);
     if (index_) {
         index_->grid.remove(index_->proxies[body]);
@@ -298,6 +308,7 @@ bool Simulation<Scalar>::isAsleep(BodyId id) const {
 
 template <class Scalar>
 void Simulation<Scalar>::setPosition(BodyId id, const Point& position) {
+    checkIsBetweenFrames();
     const std::size_t body = indexOf(id);
     positions_[body] = position;
     between_[SceneCounter::wokeUp] += wakeUp(body) ? 1 : 0;
@@ -310,8 +321,10 @@ void Simulation<Scalar>::setPosition(BodyId id, const Point& position) {
 
 template <class Scalar>
 void Simulation<Scalar>::watchPhases(std::function<void(std::string_view)> watch) {
-    watch_.set(watch);
-    observers_.watchPhases(std::move(watch));
+    detail::PhaseWatch next;
+    next.set(watch);
+    observers_.watchPhases(std::move(watch));  // may run out of memory, as what is above
+    watch_ = std::move(next);
 }
 
 template <class Scalar>

@@ -20,8 +20,8 @@
 //             pairs as born. If add() or remove() fails, nothing has changed.
 // Units       metres, seconds
 // Misuse      Asserted: ids are valid, and time steps are finite and not negative. Without assertions, invalid ids
-//             throw std::out_of_range. Asserted: callbacks of advance() do not call declare(). Without assertions,
-//             such a call does nothing.
+//             throw std::out_of_range. Asserted: the callbacks of advance() do not call add(), remove(),
+//             setPosition(), declare() or advance(). Without assertions, such a declare() or advance() does nothing.
 
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/grid.hpp>
@@ -200,6 +200,7 @@ private:
         void (Simulation::*run)();
     };
 
+    void checkIsBetweenFrames() const;
     /// Returns the body's index. Asserted: the id is valid.
     [[nodiscard]] std::size_t indexOf(BodyId id) const;
     [[nodiscard]] bool isAlive(std::size_t body) const noexcept {

@@ -20,12 +20,18 @@ const SceneCost& Simulation<Scalar>::advance(Scalar seconds, ParallelFor paralle
     HASHPHASE_ASSERT(seconds >= 0 && std::isfinite(seconds),
                      "Simulation::advance(): the time step is negative, NaN or infinite. Pass a "
                      "finite time of 0 s or more.");
-    const detail::QueryScope scope(this);
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this),
+                     "Simulation::advance() was called from within advance(). Call it after that "
+                     "returns.");
+    if (detail::QueryScope::isWithin(this)) {
+        return cost_;
+    }
     if (pairing_ && pairing_->isSpent) {
         pairing_ = nullptr;
         stockIsStale_ = true;
     }
     takeStock();
+    const detail::QueryScope scope(this);
     seconds_ = seconds;
     parallelFor_ = &parallelFor;
     farthestMove_ = 0;

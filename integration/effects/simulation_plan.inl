@@ -6,16 +6,18 @@
 #include <integration/effects/detail/simulation_parts.hpp>
 
 #include <broadphase/collectors.hpp>
+#include <broadphase/core/query_scope.hpp>
 
 #include <string>
 
 namespace hashphase {
 
 // Who takes part in what, and who is awake. Asked before each frame, and looks at all bodies only after
-// one of them has come, gone, fallen asleep or woken.
+// one of them has come, gone, fallen asleep or woken; never within a frame, which goes by what was so at
+// its beginning.
 template <class Scalar>
 void Simulation<Scalar>::takeStock() {
-    if (!stockIsStale_) {
+    if (!stockIsStale_ || detail::QueryScope::isWithin(this)) {
         return;
     }
     present_ = {};
