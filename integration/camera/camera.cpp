@@ -74,12 +74,16 @@ RayRegion<Scalar> Camera<Scalar>::rayThrough(const Pixel& pixel, double farthest
         return nothing;  // behind the eye
     }
     // The segment between two homogeneous points goes through infinity where the weight is 0.
-    const double least = inverse_.weightBehind(near.w(), farthest);
+    constexpr double kMost =
+        std::numeric_limits<float>::max() / 4;  // of a ray that does not overflow
+    const double least = inverse_.weightBehind(near.w(), std::min(farthest, kMost));
     if (far.w() < least) {
         far = near + (near.w() - least) / (near.w() - far.w()) * (far - near);
+        far.w() = least;  // which rounding may have made 0
     }
     const Vector3<double> from = near.head<3>() / near.w();
-    const Vector3<double> to = far.head<3>() / far.w();
+    const Vector3<double> along = far.head<3>() / far.w() - from;
+    const Vector3<double> to = from + along * std::min(1.0, kMost / along.cwiseAbs().maxCoeff());
     return {from.cast<Scalar>(), to.cast<Scalar>()};
 }
 

@@ -24,16 +24,6 @@ std::string frustumError(const Matrix4<Scalar>& viewProjection, const ScreenEdge
         return "The last row of the view-projection matrix is zero, so nothing is on the screen. "
                "Pass projection * view.";
     }
-    // Bounds on the coefficients of all planes.
-    const auto farthestEdge =
-        std::max({Scalar(1), std::abs(left), std::abs(bottom), std::abs(right), std::abs(top)});
-    const Eigen::Matrix<Scalar, 4, 1> most =
-        viewProjection.cwiseAbs().template topRows<3>().colwise().maxCoeff().transpose() +
-        farthestEdge * viewProjection.row(3).cwiseAbs().transpose();
-    if (!most.allFinite()) {
-        return "The numbers of the view-projection matrix or of the rectangle are so large that "
-               "the planes of the view overflow. Pass projection * view, in metres.";
-    }
     return {};
 }
 
@@ -49,8 +39,17 @@ std::array<Plane<Scalar>, 6> frustumPlanes(const Matrix4<Scalar>& viewProjection
         return planes;
     }
     // A clip coordinate is a row times a point; a bound on it is a plane. In double precision, so that
-    // small differences of large numbers are rounded once.
-    const Matrix4<double> columns = viewProjection.transpose().template cast<double>();
+    // small differences of large numbers are rounded once. A view is the same at any scale: halved until no
+    // plane overflows.
+    double farthestEdge = 1;
+    for (const Scalar edge : edges) {
+        farthestEdge = std::max(farthestEdge, std::abs(static_cast<double>(edge)));
+    }
+    const double most = std::numeric_limits<Scalar>::max() / 4 / farthestEdge;
+    Matrix4<double> columns = viewProjection.transpose().template cast<double>();
+    while (columns.cwiseAbs().maxCoeff() > most) {
+        columns /= 2;
+    }
     const Vector4<double> x = columns.col(0);
     const Vector4<double> y = columns.col(1);
     const Vector4<double> z = columns.col(2);

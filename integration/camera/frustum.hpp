@@ -8,9 +8,9 @@
 //           points have -w <= x <= w, -w <= y <= w, and z in the DepthRange. For a column-major `const float* matrix`
 //           (OpenGL, GLM, Vulkan), pass Eigen::Map<const Eigen::Matrix4f>(matrix) to frustumRegion<float>().
 // Units     metres in the world; normalised device coordinates from -1 to 1 on the screen
-// Bad data  If the matrix has a NaN, an infinity or a last row of zeros, if the rectangle is inverted or not finite, or
-//           if a plane overflows, nothing is visible: frustumError() returns the reason. Other singular matrices and
-//           transposed matrices give a wrong view, but no error.
+// Bad data  If the matrix has a NaN, an infinity or a last row of zeros, or the rectangle is inverted or not finite,
+//           nothing is visible: frustumError() returns the reason. Other singular matrices and transposed matrices
+//           give a wrong view, but no error.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/convex_region.hpp>

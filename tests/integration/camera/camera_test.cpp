@@ -117,6 +117,28 @@ TYPED_TEST(Views, AreExactThoughTheFarPlaneIsAMillionTimesAsFarAsTheNearOne) {
     }
 }
 
+TYPED_TEST(Views, CastRaysAsFarAsNumbersReach) {
+    CameraLens lens;
+    lens.farPlane = std::numeric_limits<double>::infinity();
+    const auto view = this->viewOf(lens, {0, 0, 0}, {0, 0, -1});
+    for (const double farthest : {1e30, 1e39, 1e300, std::numeric_limits<double>::infinity()}) {
+        for (const Pixel& pixel : {middleOf(kViewport), Pixel(3, 5)}) {
+            const RayRegion<TypeParam> ray = view.rayThrough(pixel, farthest);
+            ASSERT_FALSE(ray.isEmpty()) << farthest;
+            EXPECT_GE(-this->endOf(ray).z(), TypeParam(1e30)) << farthest;
+            const Vector3<TypeParam> onIt =
+                ray.from() + ray.direction() * (100 / ray.direction().norm());
+            const Aabb<TypeParam> box(onIt - Vector3<TypeParam>::Constant(1),
+                                      onIt + Vector3<TypeParam>::Constant(1));
+            EXPECT_GE(ray.key(box), 0) << farthest;
+        }
+    }
+    lens.isOrthographic = true;
+    lens.nearPlane = -2e38;
+    lens.farPlane = 2e38;
+    EXPECT_FALSE(this->viewOf(lens, {0, 0, 0}, {0, 0, -1}).rayThrough(Pixel(3, 5)).isEmpty());
+}
+
 // Lengyel, "Oblique View Frustum Depth Projection and Clipping" (2005): the near plane is that of a
 // mirror or of water, and the far plane goes wherever that leaves it.
 TYPED_TEST(Views, CastRaysFromObliqueNearPlanes) {

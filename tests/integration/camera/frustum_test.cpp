@@ -46,6 +46,28 @@ TYPED_TEST(Frustum, HasEveryPointThatTheMatrixPutsOnTheScreen) {
     EXPECT_GT(visible, 1000);
 }
 
+TYPED_TEST(Frustum, IsTheSameForAMatrixOfAnyScale) {
+    using Point = Vector3<TypeParam>;
+    Random random(0x5eed0605);
+    int visible = 0;
+    for (int i = 0; i < 30; ++i) {
+        const CameraLens lens = randomLens(random);
+        const auto matrix =
+            cameraMatrix<TypeParam>(lens, random.pointIn(-9, 9), random.pointIn(-9, 9));
+        const TypeParam most = std::numeric_limits<TypeParam>::max();
+        const auto huge = (matrix * (most / matrix.cwiseAbs().maxCoeff() / 2)).eval();
+        const auto region = frustumRegion<TypeParam>(matrix, lens.depthRange);
+        const auto same = frustumRegion<TypeParam>(huge, lens.depthRange);
+        for (int k = 0; k < 100; ++k) {
+            const Point point = random.pointIn(-30, 30).template cast<TypeParam>();
+            const Aabb<TypeParam> box(point - Point::Constant(1), point + Point::Constant(1));
+            EXPECT_EQ(same.key(box) >= 0, region.key(box) >= 0) << i;
+            visible += region.key(box) >= 0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(visible, 100);
+}
+
 TYPED_TEST(Frustum, SaysWhyItIsBad) {
     using Matrix = Eigen::Matrix<TypeParam, 4, 4>;
     const Matrix good = Matrix::Identity();
@@ -57,11 +79,6 @@ TYPED_TEST(Frustum, SaysWhyItIsBad) {
     bad = good;
     bad.row(3).setZero();
     EXPECT_NE(frustumError(bad).find("last row"), std::string::npos);
-    bad.setConstant(std::numeric_limits<TypeParam>::max());
-    EXPECT_NE(frustumError(bad).find("overflow"), std::string::npos);
-    EXPECT_TRUE(frustumRegion(bad, DepthRange::zeroToOne).isEmpty());
-    bad /= 4;
-    EXPECT_EQ(frustumError(bad), "");
     auto rectangle = wholeScreen<TypeParam>();
     rectangle.min().x() = 2;
     EXPECT_NE(frustumError(good, rectangle).find("min() not above max()"), std::string::npos);
