@@ -93,6 +93,7 @@ void Zones<Scalar>::remove(ZoneId id) {
 
 template <class Scalar>
 void Zones<Scalar>::forgetOccupants() noexcept {
+    HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kMustNotChange);
     for (Slot& slot : slots_) {
         slot.occupants.clear();
     }

@@ -194,7 +194,7 @@ template <class Scalar>
 void Simulation<Scalar>::checkIsBetweenFrames() const {
     HASHPHASE_ASSERT(
         !detail::QueryScope::isWithin(this),
-        "Simulation: a body was added, removed or set from within advance(). Change it "
+        "Simulation: a body was added, removed or changed from within advance(). Change it "
         "after that returns.");
 }
 
@@ -289,6 +289,7 @@ const Vector3<Scalar>& Simulation<Scalar>::velocity(BodyId id) const {
 template <class Scalar>
 void Simulation<Scalar>::setVelocity(BodyId id, const Point& velocity) {
     demand(Effect::motion, "setVelocity()");
+    checkIsBetweenFrames();
     const std::size_t body = indexOf(id);
     motion_->velocities[body] = velocity;
     between_[SceneCounter::wokeUp] += wakeUp(body) ? 1 : 0;

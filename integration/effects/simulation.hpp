@@ -20,8 +20,8 @@
 //             pairs as born. If add() or remove() fails, nothing has changed.
 // Units       metres, seconds
 // Misuse      Asserted: ids are valid, and time steps are finite and not negative. Without assertions, invalid ids
-//             throw std::out_of_range. Asserted: the callbacks of advance() do not call add(), remove(),
-//             setPosition(), declare() or advance(). Without assertions, such a declare() or advance() does nothing.
+//             throw std::out_of_range. Asserted: callbacks of advance() do not add, remove or change bodies, and do
+//             not call declare() or advance(). Without assertions, such a declare() or advance() does nothing.
 
 #include <broadphase/core/fixed_list.hpp>
 #include <broadphase/grid.hpp>

@@ -241,6 +241,7 @@ void Simulation<Scalar>::land() {
 template <class Scalar>
 bool Simulation<Scalar>::collide(BodyId first, BodyId second, double restitution) {
     demand(Effect::motion, "collide()");
+    checkIsBetweenFrames();
     const std::size_t a = indexOf(std::min(first, second));
     const std::size_t b = indexOf(std::max(first, second));
     HASHPHASE_ASSERT(

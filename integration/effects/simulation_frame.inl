@@ -65,6 +65,9 @@ void Simulation<Scalar>::recover() noexcept {
     if (index_) {
         index_->isFiling = false;
     }
+    if (sleep_) {
+        sleep_->mustLook = true;
+    }
     stockIsStale_ = true;
     changedOutside_ = true;
 }
@@ -75,12 +78,13 @@ void Simulation<Scalar>::recover() noexcept {
 template <class Scalar>
 void Simulation<Scalar>::wake() {
     Sleep& sleep = *sleep_;
-    const std::optional<Point>& interest = observers_.interest();
-    if (sleep.farCount == 0 || (sleep.interest == interest && !sleep.mustLook)) {
-        return;
-    }
+    const std::optional<Point> interest = observers_.interest();
+    const bool isWhereItWas = sleep.interest == interest && !sleep.mustLook;
     sleep.interest = interest;
     sleep.mustLook = false;
+    if (sleep.farCount == 0 || isWhereItWas) {
+        return;
+    }
     const auto radius = static_cast<Scalar>(effects_.sleeping->interestRadius);
     for (std::size_t body = 0; body < positions_.size(); ++body) {
         if (!isAlive(body) || sleep.states[body] != Sleep::State::distant) {
@@ -210,7 +214,7 @@ void Simulation<Scalar>::rest() {
     const SleepingEffect& effect = *effects_.sleeping;
     const auto slowBelow = static_cast<Scalar>(effect.slowBelow);
     const auto radius = static_cast<Scalar>(effect.interestRadius);
-    const std::optional<Point>& interest = observers_.interest();
+    const std::optional<Point>& interest = sleep.interest;  // of those who woke in this frame
     const auto fallsAsleep = [&](std::uint32_t body) {
         Point& velocity = motion_->velocities[body];
         std::uint32_t& slowFrames = sleep.slowFrames[body];
@@ -234,7 +238,6 @@ void Simulation<Scalar>::rest() {
     const auto end = std::remove_if(movers.begin(), movers.end(), fallsAsleep);
     cost_[SceneCounter::fellAsleep] += static_cast<std::size_t>(movers.end() - end);
     movers.erase(end, movers.end());
-    sleep.interest = interest;
 }
 
 template <class Scalar>

@@ -46,7 +46,7 @@ struct Simulation<Scalar>::Sleep {
     std::vector<State> states;
     std::vector<std::uint32_t> slowFrames;  // how many in a row, until now
     std::size_t farCount = 0;
-    std::optional<Point> interest;  // of the last look at who is far
+    std::optional<Point> interest;  // of the frame: who is far from it
     bool mustLook = false;          // again, though it is the same
 };
 

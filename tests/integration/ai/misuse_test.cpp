@@ -136,6 +136,20 @@ TEST(ZonesMisuse, OfWhatWasRemovedChangesNobodyWithoutAssertions) {
     EXPECT_GE(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 9 : 0);
 }
 
+TEST(ZonesMisuse, OfForgetOccupantsByAFilterIsAsserted) {
+    const CaughtAsserts caught;
+    Grid<float> grid;
+    static_cast<void>(grid.add(makeBox<float>(0, 0, 0, 1, 1, 1)));
+    Zones<float> zones;
+    static_cast<void>(zones.add({SphereRegion<float>({0, 0, 0}, 9)}));
+    const auto filter = [&](ZoneId, ProxyId) {
+        zones.forgetOccupants();
+        return true;
+    };
+    static_cast<void>(zones.update(grid, filter));
+    EXPECT_EQ(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 1 : 0);
+}
+
 TEST(RarestColourMisuse, OfItsUpdatesByTheirCallbacksChangesNothingWithoutAssertions) {
     const CaughtAsserts caught;
     Grid<float> grid;
