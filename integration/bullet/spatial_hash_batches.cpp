@@ -8,6 +8,7 @@
 #include <broadphase/move_batch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/lone_moves.inl>
+#include <integration/bullet/detail/other_cache.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <LinearMath/btQuickprof.h>
@@ -309,7 +310,7 @@ void SpatialHashBroadphase::removePairsOf(std::span<btBroadphaseProxy* const> pr
             if (dispatcher != nullptr) {
                 freeCut(proxy, dispatcher);
             }
-            pairCache_->removeOverlappingPairsContainingProxy(proxy, dispatcher);
+            detail::removePairsOf(*proxy, *pairCache_, dispatcher);
         }
         return;
     }

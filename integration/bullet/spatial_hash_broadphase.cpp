@@ -363,7 +363,7 @@ void SpatialHashBroadphase::applyToCache(std::span<const BulletProxyPair> died,
         return;
     }
     for (const BulletProxyPair& pair : died) {
-        pairCache_->removeOverlappingPair(pair.lower(), pair.upper(), dispatcher);
+        detail::removePair(pair, *pairCache_, dispatcher);
     }
     for (const BulletProxyPair& pair : born) {
         if (pair.isUpToDate()) {  // a callback may have destroyed one of the two

@@ -88,7 +88,7 @@ public:
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
 
     /// Removes the proxy's pairs through the pair cache, then the proxy. Cost: as the cache's
-    /// removeOverlappingPairsContainingProxy().
+    /// removeOverlappingPairsContainingProxy(); with another cache than a PairCache, also a pass over all pairs.
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
     /// Sets the proxy's box. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), also reads the

@@ -15,9 +15,13 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
     checkMayChange();
-    HASHPHASE_ASSERT(!isCalculating(),
-                     "releaseUnusedMemory() was called from a callback of "
-                     "calculateOverlappingPairs(). Call it after the step.");
+    const bool isWithin = isCalculating() || detail::QueryScope::isWithin(pairCache_);
+    HASHPHASE_ASSERT(!isWithin,
+                     "releaseUnusedMemory() was called from a callback of the broadphase or of its "
+                     "pair cache. Call it after that returns.");
+    if (isWithin) {
+        return;
+    }
     grid_.releaseUnusedMemory();
     pairs_.releaseUnusedMemory();
     if (sweeps_ != nullptr) {
@@ -31,10 +35,11 @@ void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
 }
 
 // Those whose indices the grid has given back. A cache that is behind, or from which somebody has taken
-// pairs, may still name some.
+// pairs, may still name some; so may who calls the cache, of which a callback has come here.
 void SpatialHashBroadphase::dropLastProxies() noexcept {
     watch_.prune();
-    const bool mayBeNamed = isCacheBehind_ || watch_.isAnythingTakenOut();
+    const bool mayBeNamed =
+        isCacheBehind_ || watch_.isAnythingTakenOut() || detail::QueryScope::isWithin(pairCache_);
     if (!mayBeNamed && grid_.indexLimit() < uniqueIds_.size()) {
         uniqueIds_.resize(grid_.indexLimit());
         uniqueIds_.shrink_to_fit();

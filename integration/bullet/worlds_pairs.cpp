@@ -176,10 +176,11 @@ std::size_t WorldsBroadphase::memoryBytes() const noexcept {
 }
 
 void WorldsBroadphase::releaseUnusedMemory() noexcept {
-    const bool isWithin = detail::QueryScope::isWithin(&lastUniqueId_);
+    const bool isWithin =
+        detail::QueryScope::isWithin(&lastUniqueId_) || detail::QueryScope::isWithin(pairCache_);
     HASHPHASE_ASSERT(!isWithin,
-                     "releaseUnusedMemory() was called from a callback of "
-                     "calculateOverlappingPairs(). Call it after the step.");
+                     "releaseUnusedMemory() was called from a callback of the broadphase or of its "
+                     "pair cache. Call it after that returns.");
     if (isWithin) {
         return;
     }
