@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #include <integration/bullet/world_effects.hpp>
 
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/diagnostics.hpp>
 #include <integration/bullet/detail/living_broadphase.hpp>
 #include <integration/bullet/pair_cache.hpp>
@@ -16,11 +17,15 @@
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
+// From the last one on: a callback of contacts that end may remove objects, and then the last one, which
+// has been visited, takes the place of the one that goes.
 template <class Visit>
 void forEachObject(btCollisionWorld& world, const Visit& visit) {
     btCollisionObjectArray& objects = world.getCollisionObjectArray();
-    for (int i = 0; i < objects.size(); ++i) {
-        visit(*objects[i]);
+    for (int i = objects.size() - 1; i >= 0; --i) {
+        if (i < objects.size()) {
+            visit(*objects[i]);
+        }
     }
 }
 
@@ -68,6 +73,13 @@ WorldConfigurator::~WorldConfigurator() {
 }
 
 void WorldConfigurator::apply(const WorldEffects& effects) {
+    HASHPHASE_ASSERT(
+        !detail::QueryScope::isWithin(this),
+        "WorldConfigurator::apply() was called from within WorldEffects::effectsOf. Call "
+        "it after that returns.");
+    if (detail::QueryScope::isWithin(this)) {
+        return;  // or the function would be destroyed while it runs
+    }
     const bool haveMasks = effects.effectsOf || effects_.effectsOf;
     arePairsOld_ = arePairsOld_ || haveMasks || effects.pairs != effects_.pairs;
     WorldEffects copy = effects;  // takes memory
@@ -147,6 +159,7 @@ BodyEffects WorldConfigurator::effectsOf(const btCollisionObject& object) const 
     BodyEffects effects{effects_.pairs,    effects_.response, effects_.sweep,
                         effects_.sleeping, effects_.rotation, effects_.friction};
     if (effects_.effectsOf) {
+        const detail::QueryScope scope(this);
         const BodyEffects own = effects_.effectsOf(object);
         effects.pairs = effects.pairs && own.pairs;
         effects.response = effects.response && own.response;

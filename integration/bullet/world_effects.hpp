@@ -98,7 +98,8 @@ struct WorldEffects {
 
     /// Returns the effects of an object, to switch effects off for single objects. If this function is not set, none
     /// is switched off. Two objects pair only if both have `pairs`. The overlap filter calls this function too, on
-    /// the thread that asks the filter.
+    /// the thread that asks the filter. Asserted: the function does not call apply(). Without assertions, such a call
+    /// does nothing.
     std::function<BodyEffects(const btCollisionObject&)> effectsOf{};
 };
 

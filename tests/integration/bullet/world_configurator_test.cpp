@@ -3,6 +3,7 @@
 // What is set on a world and its bodies, what is given back, and to whom.
 
 #include <tests/integration/bullet/effects_room.hpp>
+#include <tests/support/handlers.hpp>
 #include <tests/support/out_of_memory.hpp>
 
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <memory>
 #include <new>
+#include <utility>
 #include <vector>
 
 extern int gNumClampedCcdMotions;  // Bullet's own count of sweeps
@@ -268,6 +270,54 @@ TEST(WorldConfigurator, FileBodiesThatRestOnce) {
     EXPECT_EQ(top(), gContactBreakingThreshold);
     room.world().updateSingleAabb(&floor);
     EXPECT_GT(top(), 5);
+}
+
+TEST(WorldConfigurator, AreNotAppliedByTheirOwnFunction) {
+    EffectsRoom room;
+    room.addCube({0, btScalar(0.5), 0});
+    WorldConfigurator configurator(room.world());
+    const CaughtAsserts caught;
+    int calls = 0;
+    configurator.apply({.effectsOf = [&, large = std::array<int, 16>{}](const btCollisionObject&) {
+        configurator.apply({.pairs = false});
+        calls += 1 + large[0];
+        return BodyEffects{};
+    }});
+    run(configurator, 2);
+    EXPECT_GT(calls, 2);
+    EXPECT_EQ(caught.count(), HASHPHASE_ENABLE_ASSERTS ? calls : 0);
+    EXPECT_EQ(room.cost().pairCount, 1U);
+}
+
+// Bullet puts the last object where the one was that goes. From the contact of bodies 3 and 4 on, 7 and 8 are where
+// 1 and 2 were.
+TEST(WorldConfigurator, ReachAllBodiesThoughCallbacksRemoveSome) {
+    PairCache cache;
+    EffectsRoom room(std::make_unique<btDbvtBroadphase>(&cache));
+    for (int i = 0; i < 8; ++i) {
+        room.addCube({btScalar(i) * btScalar(0.9), btScalar(0.5), 0});
+    }
+    room.step();
+    WorldConfigurator configurator(room.world());
+    static DynamicsWorld* where;
+    static int removed;
+    where = &room;
+    removed = 0;
+    gContactEndedCallback = [](btPersistentManifold* const& manifold) {
+        const int product =
+            manifold->getBody0()->getUserIndex() * manifold->getBody1()->getUserIndex();
+        if (product == 3 * 4 && removed == 0) {
+            removed = 2;
+            where->takeOut(1);
+            where->takeOut(2);
+        }
+    };
+    configurator.apply({.effectsOf = [](const btCollisionObject& object) {
+        return BodyEffects{.pairs = object.isStaticObject()};
+    }});
+    gContactEndedCallback = nullptr;
+    EXPECT_EQ(removed, 2);
+    EXPECT_EQ(room.cost().pairCount, 0U);
 }
 
 TEST(WorldConfigurator, KeepTheFilterThatTheWorldHad) {
