@@ -40,7 +40,7 @@
 // Lifetime  Keep a shape alive while a snapshot contains an object with this shape. Do not change compound shapes
 //           after save().
 // Callbacks restore() calls contact and ghost callbacks only for objects that it removes, as removeCollisionObject()
-//           does.
+//           does. These callbacks may remove other objects that were added after save(), but must add none.
 // Calls     Call save() and restore() between steps. Within callbacks of the broadphase or its cache, they return a
 //           fault. Never call them in tick callbacks or motion states: such calls are not detected, and forces of the
 //           step count twice.

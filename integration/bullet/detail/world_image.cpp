@@ -197,8 +197,13 @@ void WorldImage::takeOutAdded(btDiscreteDynamicsWorld& world) const {
     for (btActionInterface* action : addedActions_) {
         world.removeAction(action);
     }
-    for (btCollisionObject* object : addedObjects_) {
-        world.removeCollisionObject(object);
+    // Callbacks of contacts that end may remove others of them: those that are there still, from the last one on.
+    std::ranges::sort(addedObjects_);
+    btCollisionObjectArray& all = world.getCollisionObjectArray();
+    for (int i = addedObjects_.empty() ? -1 : all.size() - 1; i >= 0; --i) {
+        if (i < all.size() && std::ranges::binary_search(addedObjects_, all[i])) {
+            world.removeCollisionObject(all[i]);
+        }
     }
 }
 

@@ -178,7 +178,8 @@ std::string WorldImage::readObjects(ByteReader& from, btDiscreteDynamicsWorld& w
     }
     HandedOver<btCollisionObject> handedOver(returned.objects);
     std::vector<std::uint32_t> numbers;  // of lists, in the order of `pointers`
-    std::string missing;
+    std::string away;                    // unique ids, of those that are not in the world
+    std::string fault;
     for (std::uint32_t i = 0; i < count; ++i) {
         SavedObject saved{};
         saved.uniqueId = from.read<int>();
@@ -198,26 +199,32 @@ std::string WorldImage::readObjects(ByteReader& from, btDiscreteDynamicsWorld& w
         saved.ghostPairCount = from.read<int>();
         const std::uint32_t place = uniqueIds.find(static_cast<std::uint32_t>(saved.uniqueId));
         saved.object = place != FlatSet::kNone ? all[static_cast<int>(place)] : handedOver.next();
+        if (place == FlatSet::kNone) {
+            away += (away.empty() ? "" : ", ") + std::to_string(saved.uniqueId);
+        }
         if (saved.object == nullptr) {
-            missing += (missing.empty() ? "" : ", ") + std::to_string(saved.uniqueId);
             continue;
         }
-        if (saved.object->getInternalType() != saved.type ||
-            shapeRevisionOf(saved.object->getCollisionShape()) != saved.shapeRevision) {
-            return "The object with the unique id " + std::to_string(saved.uniqueId) +
-                   " has another type or compound shape than the saved one. Build both worlds by "
-                   "the same calls.";
+        if (fault.empty() &&
+            (saved.object->getInternalType() != saved.type ||
+             shapeRevisionOf(saved.object->getCollisionShape()) != saved.shapeRevision)) {
+            fault = "The object with the unique id " + std::to_string(saved.uniqueId) +
+                    " has another type or compound shape than the saved one. Build both worlds by "
+                    "the same calls.";
         }
         saved.shape = saved.object->getCollisionShape();
         saved.rootShape = saved.shape;
         objects.push_back(saved);
     }
-    if (!missing.empty()) {
+    if (objects.size() < count) {
         return "Objects are not in the world. Hand them over as Returned::objects, in the order of "
                "these unique ids: " +
-               missing + ".";
+               away + ".";
     }
-    return areDistinct() ? takeNumbers(from, numbers) : contradiction("objects");
+    if (fault.empty() && !areDistinct()) {
+        fault = contradiction("objects");
+    }
+    return fault.empty() ? takeNumbers(from, numbers) : fault;
 }
 
 bool WorldImage::areDistinct() const {

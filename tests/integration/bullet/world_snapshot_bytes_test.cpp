@@ -16,6 +16,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,10 +38,17 @@ TEST(WorldSnapshot, IsReadWhereObjectsHaveToBeHandedOver) {
     few.world.removeRigidBody(few.pool[4].get());
     few.world.removeRigidBody(few.pool[2].get());
     WorldSnapshot received;
-    EXPECT_EQ(received.read(bytes, few.world, few.broadphase),
-              "Objects are not in the world. Hand them over as Returned::objects, in the order of "
-              "these unique ids: 4, 6.");
     const std::array<btCollisionObject*, 2> objects{few.pool[2].get(), few.pool[4].get()};
+    btGhostObject ghost;  // of another type, where it stands for a body
+    ghost.setCollisionShape(&few.ball);
+    btCollisionObject* const wrong = &ghost;
+    for (const std::span<btCollisionObject* const> tooFew :
+         {std::span<btCollisionObject* const>(), std::span(objects).first(1),
+          std::span(objects).last(1), std::span(&wrong, 1)}) {
+        EXPECT_EQ(received.read(bytes, few.world, few.broadphase, {.objects = tooFew}),
+                  "Objects are not in the world. Hand them over as Returned::objects, in the order "
+                  "of these unique ids: 4, 6.");
+    }
     EXPECT_NE(received.read(bytes, few.world, few.broadphase, {.objects = objects})
                   .find("Hand it over as Returned::joints."),
               std::string::npos);

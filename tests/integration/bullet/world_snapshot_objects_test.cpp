@@ -15,8 +15,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hashphase::test {
@@ -110,6 +112,46 @@ TEST(WorldSnapshot, TakesOutWhatWasAddedSince) {
     EXPECT_FALSE(few.isIn(10));
     EXPECT_EQ(few.world.getNumConstraints(), 0);
     EXPECT_EQ(few.world.getNumCollisionObjects(), 7);
+}
+
+// The first end of a contact takes the others to another world.
+TEST(WorldSnapshot, TakesOutWhatIsLeftOfWhatWasAddedSince) {
+    FewBodies few;
+    SpatialHashBroadphase broadphase;
+    btDiscreteDynamicsWorld other(&few.dispatcher, &broadphase, &few.solver, &few.configuration);
+    WorldSnapshot snapshot;
+    ASSERT_EQ(few.save(snapshot), "");
+    const std::uint64_t state = wholeState(few.world);
+    for (std::size_t i = 10; i < 14; ++i) {
+        few.add(i, btVector3(static_cast<btScalar>(i) / 4, btScalar(0.4), 5));
+    }
+    few.world.stepSimulation(btScalar(1) / 60, 0);
+    std::vector<btRigidBody*> moved;
+    static std::function<void(const btPersistentManifold&)> onEnd;
+    onEnd = [&, isFirst = true](const btPersistentManifold& manifold) mutable {
+        for (std::size_t i = 10; isFirst && i < 14; ++i) {
+            btRigidBody* const body = few.pool[i].get();
+            if (body != manifold.getBody0() && body != manifold.getBody1()) {
+                moved.push_back(body);
+            }
+        }
+        if (std::exchange(isFirst, false)) {
+            for (btRigidBody* const body : moved) {
+                few.world.removeRigidBody(body);
+                other.addRigidBody(body);
+            }
+        }
+    };
+    gContactEndedCallback = [](btPersistentManifold* const& manifold) { onEnd(*manifold); };
+    EXPECT_EQ(few.restoreWithout(snapshot), "");
+    gContactEndedCallback = nullptr;
+    EXPECT_EQ(wholeState(few.world), state);
+    EXPECT_EQ(few.world.getNumCollisionObjects(), 7);
+    EXPECT_GE(moved.size(), 2U);
+    EXPECT_EQ(other.getNumCollisionObjects(), static_cast<int>(moved.size()));
+    for (btRigidBody* const body : moved) {
+        other.removeRigidBody(body);
+    }
 }
 
 TEST(WorldSnapshot, NamesWhatWasRemovedSinceAndChangesNothing) {
