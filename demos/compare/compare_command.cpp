@@ -66,8 +66,8 @@ void declare(CLI::App& app, CompareOptions& options) {
                        "write a page with charts to this file; its Replay tab plays the first "
                        "frames, in a browser with WebGL2");
     app.add_option("--replay-frames", options.replayFrames,
-                   "number of frames that the page can replay; 0: none (default: as many as fit in "
-                   "6 MB)")
+                   "number of frames that the page can replay; 0: none (default: as many of 120 as "
+                   "fit in 6 MB)")
         ->needs(html)
         ->transform(wholeFrom(0, 10'000));
     app.add_option("--time-limit", options.timeLimit, "stop after this many seconds")
