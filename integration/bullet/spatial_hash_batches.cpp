@@ -8,7 +8,6 @@
 #include <broadphase/move_batch.hpp>
 #include <integration/bullet/conversions.hpp>
 #include <integration/bullet/detail/lone_moves.inl>
-#include <integration/bullet/detail/other_cache.hpp>
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <LinearMath/btQuickprof.h>
@@ -306,11 +305,12 @@ void SpatialHashBroadphase::endProxy(Proxy& proxy, int uniqueId, std::uint64_t c
 void SpatialHashBroadphase::removePairsOf(std::span<btBroadphaseProxy* const> proxies,
                                           btDispatcher* dispatcher) {
     if (watch_.cache == nullptr) {
+        const detail::QueryScope scope(pairCache_, detail::QueryScope::Changes::allowed);
         for (btBroadphaseProxy* proxy : proxies) {
             if (dispatcher != nullptr) {
                 freeCut(proxy, dispatcher);
             }
-            detail::removePairsOf(*proxy, *pairCache_, dispatcher);
+            pairCache_->removeOverlappingPairsContainingProxy(proxy, dispatcher);
         }
         return;
     }

@@ -6,7 +6,6 @@
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
 #include <broadphase/core/on_failure.hpp>
-#include <integration/bullet/detail/other_cache.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
 #include <algorithm>
@@ -14,6 +13,28 @@
 #include <vector>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
+namespace {
+
+// cleanProxyFromPairs() of Bullet's caches goes on with a pair whose contacts it has ended, although who is
+// told of that may have changed the array. A second pass finds what a change has moved to the front.
+void endContactsOf(const btBroadphaseProxy& proxy, btOverlappingPairCache& cache,
+                   btDispatcher* dispatcher) {
+    btBroadphasePairArray& pairs = cache.getOverlappingPairArray();
+    for (bool isDone = dispatcher == nullptr; !isDone;) {
+        isDone = true;
+        for (int i = 0; i < pairs.size(); ++i) {
+            const bool isOf = pairs[i].m_pProxy0 == &proxy || pairs[i].m_pProxy1 == &proxy;
+            if (isOf && pairs[i].m_algorithm != nullptr) {
+                btBroadphasePair pair = pairs[i];
+                pairs[i].m_algorithm = nullptr;
+                cache.cleanOverlappingPair(pair, dispatcher);
+                isDone = false;
+            }
+        }
+    }
+}
+
+}  // namespace
 
 // All births at once: should memory run out, there are none.
 void SpatialHashBroadphase::findPairsNow(const Proxy& proxy, btDispatcher* dispatcher) {
@@ -109,7 +130,7 @@ void SpatialHashBroadphase::shapeChanged(btBroadphaseProxy* proxy, btDispatcher*
     if (watch_.cache != nullptr) {
         watch_.cache->renewPairsContainingProxy(own, dispatcher);
     } else if (pairCache_->hasDeferredRemoval()) {
-        detail::endContactsOf(*own, *pairCache_, dispatcher);
+        endContactsOf(*own, *pairCache_, dispatcher);
     } else {
         renewPairsOfOtherCache(*own, dispatcher);
     }
@@ -126,8 +147,10 @@ void SpatialHashBroadphase::renewPairsOfOtherCache(btBroadphaseProxy& proxy,
         }
     }
     for (const BulletProxyPair& pair : bulletPairs) {
-        detail::removePair(pair, *pairCache_, dispatcher);
         if (pair.isUpToDate()) {  // a callback may have destroyed one of the two
+            pairCache_->removeOverlappingPair(pair.lower(), pair.upper(), dispatcher);
+        }
+        if (pair.isUpToDate()) {
             pairCache_->addOverlappingPair(pair.lower(), pair.upper());
         }
     }
@@ -161,6 +184,7 @@ void SpatialHashBroadphase::removeDeferred(IsPair isPair, btDispatcher* dispatch
         return;
     }
     cut_ = &cut;
+    const detail::QueryScope scope(pairCache_, detail::QueryScope::Changes::allowed);
     freeCut(nullptr, dispatcher);
     cut_ = nullptr;
 }

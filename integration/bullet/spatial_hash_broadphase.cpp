@@ -98,8 +98,10 @@ btBroadphaseProxy* SpatialHashBroadphase::createProxy(const btVector3& aabbMin,
                        "proxies, then call resetPool().");
     Proxy& proxy = place({aabbMin, aabbMax, userPtr, collisionFilterGroup, collisionFilterMask});
     const detail::OnFailure destroy([&] {
-        // What a pair cache of the user's throws as well gives way to what has failed first.
-        static_cast<void>(detail::exceptionOf([&] { destroyProxy(&proxy, dispatcher); }));
+        // What a pair cache of the user's throws as well gives way to what has failed first. A class that
+        // derives from this one has not got the proxy yet.
+        static_cast<void>(
+            detail::exceptionOf([&] { SpatialHashBroadphase::destroyProxy(&proxy, dispatcher); }));
     });
     if (isEager(proxy, dispatcher)) {
         findPairsNow(proxy, dispatcher);
@@ -362,8 +364,9 @@ void SpatialHashBroadphase::applyToCache(std::span<const BulletProxyPair> died,
         }
         return;
     }
+    const detail::QueryScope scope(pairCache_, detail::QueryScope::Changes::allowed);
     for (const BulletProxyPair& pair : died) {
-        detail::removePair(pair, *pairCache_, dispatcher);
+        pairCache_->removeOverlappingPair(pair.lower(), pair.upper(), dispatcher);
     }
     for (const BulletProxyPair& pair : born) {
         if (pair.isUpToDate()) {  // a callback may have destroyed one of the two

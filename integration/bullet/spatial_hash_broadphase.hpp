@@ -18,10 +18,10 @@
 // Bad data  A box with a NaN makes no pair; the first such box is reported (diagnostics.hpp). Infinite, huge and
 //           inverted boxes are compared exactly by their coordinates. The dispatcher may be NULL.
 // Callbacks Callbacks of rayTest(), aabbTest(), closestRay(), the pair cache and the dispatcher may query, and
-//           create, move and destroy proxies. A query does not report destroyed proxies. It may report or skip a
-//           proxy that a callback creates or moves, and may report a moved proxy twice. Do not remove an object that
-//           Bullet is working on. Asserted: the overlap filter only queries; no callback calls
-//           calculateOverlappingPairs(), shiftOrigin(), resetPool() or releaseUnusedMemory().
+//           create, move and destroy proxies; with one of Bullet's own pair caches, they must not destroy proxies. A
+//           query does not report destroyed proxies. It may report or skip a proxy that a callback creates or moves,
+//           and may report a moved proxy twice. Do not remove an object that Bullet is working on. Asserted: the
+//           overlap filter only queries; no callback calculates pairs, shifts the origin or releases memory.
 // Memory    Throws std::bad_alloc when memory runs out. In that case, repeat the call, except createProxies(), which
 //           may have created some proxies. A failed createProxy() has created nothing. A failed shiftOrigin() has
 //           shifted nothing. A failed setAabb() has moved the proxy, but perhaps not set its sweep. The next
@@ -88,7 +88,7 @@ public:
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
 
     /// Removes the proxy's pairs through the pair cache, then the proxy. Cost: as the cache's
-    /// removeOverlappingPairsContainingProxy(); with another cache than a PairCache, also a pass over all pairs.
+    /// removeOverlappingPairsContainingProxy().
     void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override;
 
     /// Sets the proxy's box. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), also reads the

@@ -35,11 +35,10 @@ void SpatialHashBroadphase::releaseUnusedMemory() noexcept {
 }
 
 // Those whose indices the grid has given back. A cache that is behind, or from which somebody has taken
-// pairs, may still name some; so may who calls the cache, of which a callback has come here.
+// pairs, may still name some.
 void SpatialHashBroadphase::dropLastProxies() noexcept {
     watch_.prune();
-    const bool mayBeNamed =
-        isCacheBehind_ || watch_.isAnythingTakenOut() || detail::QueryScope::isWithin(pairCache_);
+    const bool mayBeNamed = isCacheBehind_ || watch_.isAnythingTakenOut();
     if (!mayBeNamed && grid_.indexLimit() < uniqueIds_.size()) {
         uniqueIds_.resize(grid_.indexLimit());
         uniqueIds_.shrink_to_fit();

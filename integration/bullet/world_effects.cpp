@@ -17,15 +17,14 @@
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
-// From the last one on: a callback of contacts that end may remove objects, and then the last one, which
-// has been visited, takes the place of the one that goes.
+// From the first one on again if a callback of contacts that end has removed some: others are in their places.
 template <class Visit>
 void forEachObject(btCollisionWorld& world, const Visit& visit) {
     btCollisionObjectArray& objects = world.getCollisionObjectArray();
-    for (int i = objects.size() - 1; i >= 0; --i) {
-        if (i < objects.size()) {
-            visit(*objects[i]);
-        }
+    for (int i = 0; i < objects.size();) {
+        const int count = objects.size();
+        visit(*objects[i]);
+        i = objects.size() < count ? 0 : i + 1;
     }
 }
 

@@ -73,9 +73,9 @@ RayRegion<Scalar> Camera<Scalar>::rayThrough(const Pixel& pixel, double farthest
     if (!(near.w() > 0)) {
         return nothing;  // behind the eye
     }
-    // The segment between two homogeneous points goes through infinity where the weight is 0.
-    constexpr double kMost =
-        std::numeric_limits<float>::max() / 4;  // of a ray that does not overflow
+    // The segment between two homogeneous points goes through infinity where the weight is 0. No part of it is to
+    // overflow.
+    constexpr double kMost = std::min<double>(std::numeric_limits<Scalar>::max() / 4, 1e300);
     const double least = inverse_.weightBehind(near.w(), std::min(farthest, kMost));
     if (far.w() < least) {
         far = near + (near.w() - least) / (near.w() - far.w()) * (far - near);

@@ -10,7 +10,6 @@
 #include <btBulletDynamicsCommon.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -294,33 +293,63 @@ TEST(CallbacksOfEnds, MayDestroyProxiesOfPairsThatAreYetToLeaveACacheThatDefersR
     EXPECT_EQ(boxes.hash().validate(), "");
 }
 
-// Whoever is destroyed with it is yet to be ended.
-TEST(CallbacksOfEnds, DoNotFreeWhatIsBeingDestroyed) {
-    ManyWorlds worlds(1);
-    SpatialHashBroadphase& one = worlds.worlds.world(0);
-    PairJournal journal;
-    worlds.cache.setInternalGhostPairCallback(&journal);
-    std::vector<btBroadphaseProxy*> proxies;
-    for (int i = 0; i < 3000; ++i) {
-        proxies.push_back(worlds.createIn(0, boxAround({btScalar(i), 0, 0}, {1, 1, 1})));
+TEST(CallbacksOfEnds, MayDestroyOthersWhileAShapeChangesInACacheThatDefersRemoval) {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    std::vector<Uids> freed;
+    AnyBoxes boxes(std::make_unique<btSortedOverlappingPairCache>());
+    for (const double x : {0.0, 0.5, 0.6, 0.7}) {
+        boxes.create(cubeAt(btScalar(x)));
     }
-    worlds.step();
+    boxes.step();
+    ASSERT_EQ(boxes.pairCount(), 6);
+    const NotedAlgorithm::Act destroyAnother = [&](const Uids& ended) {
+        if (freed.size() == 1) {
+            const std::size_t other = ended == Uids(1, 2) ? 2 : 1;
+            boxes.over->destroyProxy(boxes.proxies[other], &dispatcher);
+            boxes.proxies.erase(boxes.proxies.begin() + static_cast<std::ptrdiff_t>(other));
+        }
+    };
+    btBroadphasePairArray& pairs = boxes.pairCache().getOverlappingPairArray();
+    for (int i = 0; i < pairs.size(); ++i) {
+        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
+        pairs[i].m_algorithm = new (memory) NotedAlgorithm(uidsOf(pairs[i]), freed, destroyAnother);
+    }
+    boxes.hash().shapeChanged(boxes.proxies[0], &dispatcher);
+    // Three of the first proxy, and two more of the one that was destroyed.
+    EXPECT_EQ(freed.size(), 5U);
+    ASSERT_EQ(boxes.pairCount(), 3);
+    for (int i = 0; i < pairs.size(); ++i) {
+        const bool isOfFirst = uidsOf(pairs[i]).first == 1;
+        EXPECT_EQ(pairs[i].m_algorithm == nullptr, isOfFirst);
+        boxes.pairCache().cleanOverlappingPair(pairs[i], &dispatcher);
+    }
+    EXPECT_EQ(freed.size(), 6U);
+    boxes.over->calculateOverlappingPairs(&dispatcher);
+    EXPECT_EQ(boxes.hash().validate(), "");
+}
+
+TEST(CallbacksOfEnds, ReleaseNoMemory) {
+    ManyWorlds boxes(1);
+    PairJournal journal;
+    boxes.cache.setInternalGhostPairCallback(&journal);
+    for (const double x : {0.0, 0.5, 1.0}) {
+        boxes.createIn(0, cubeAt(btScalar(x)));
+    }
+    boxes.step();
     const CaughtAsserts caught;
     int calls = 0;
     journal.onDeath = [&](btBroadphaseProxy*, btBroadphaseProxy*) {
-        if (std::exchange(calls, 1) == 0) {
-            for (std::size_t i = 100; i < proxies.size(); ++i) {
-                one.destroyProxy(proxies[i], nullptr);
-            }
-            one.releaseUnusedMemory();
-            worlds.worlds.releaseUnusedMemory();
-        }
+        ++calls;
+        boxes.worlds.world(0).releaseUnusedMemory();
+        boxes.worlds.releaseUnusedMemory();
     };
-    worlds.worlds.destroyProxies(proxies, nullptr);
-    EXPECT_EQ(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 2 : 0);
-    EXPECT_EQ(worlds.cache.getNumOverlappingPairs(), 0);
-    worlds.proxies.clear();
-    EXPECT_EQ(worlds.worlds.validate(), "");
+    boxes.worlds.destroyProxies(boxes.proxies, nullptr);
+    boxes.proxies.clear();
+    EXPECT_EQ(calls, 3);
+    EXPECT_EQ(caught.count(), HASHPHASE_ENABLE_ASSERTS ? 2 * calls : 0);
+    boxes.step();
+    EXPECT_EQ(boxes.worlds.validate(), "");
 }
 
 TEST(WorldsBroadphase, HasTheBoundsOfOneBroadphaseWithTheSameBoxes) {

@@ -256,6 +256,37 @@ TEST(Callbacks, ThatFailAgainWhileACreationIsUndoneGiveWayToTheFirstFailure) {
     room.cache.setInternalGhostPairCallback(nullptr);
 }
 
+/// Notes which proxies a class that derives from the broadphase hears of.
+struct DerivedBroadphase : SpatialHashBroadphase {
+    using SpatialHashBroadphase::SpatialHashBroadphase;
+    void destroyProxy(btBroadphaseProxy* proxy, btDispatcher* dispatcher) override {
+        ++destroyed;
+        SpatialHashBroadphase::destroyProxy(proxy, dispatcher);
+    }
+    int destroyed = 0;
+};
+
+TEST(Callbacks, ThatMakeACreationFailAreNotToldToADerivedClassAsAnEnd) {
+    SpatialHashConfig config;
+    config.eagerGroups = kEager;
+    DerivedBroadphase broadphase(config);
+    PairJournal ghosts;
+    ghosts.onBirth = [](btBroadphaseProxy*, btBroadphaseProxy*) {
+        throw std::runtime_error("birth");
+    };
+    broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&ghosts);
+    const auto create = [&](int group) {
+        return broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, group,
+                                      btBroadphaseProxy::AllFilter, nullptr);
+    };
+    btBroadphaseProxy* const proxy = create(btBroadphaseProxy::DefaultFilter);
+    EXPECT_THROW(create(kEager), std::runtime_error);
+    EXPECT_EQ(broadphase.destroyed, 0);
+    EXPECT_EQ(broadphase.grid().size(), 1U);
+    broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(nullptr);
+    broadphase.destroyProxy(proxy, nullptr);
+}
+
 #if HASHPHASE_ENABLE_ASSERTS
 TEST(Callbacks, OfTheFilterMustChangeNothing) {
     std::function<void(btBroadphaseProxy&)> change;
