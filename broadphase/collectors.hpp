@@ -12,7 +12,7 @@
 //     grid.visit(BoxRegion<float>{box}, all);  // the answer is in `found`
 //
 // Use      Pass a variable, not a temporary. After the query, the answer is in the collector, or in the vector that
-//          its constructor received. Use a collector in one query at a time, on one thread.
+//          its constructor received. Do not use a collector in two queries at the same time.
 // Keys     The region defines the keys (regions.hpp): 0, a squared distance [m^2], or a fraction of a path.
 // Own      Any class with these members is a collector. add() receives keys of the grid's Scalar; limit() may return
 //          float or double. For collectors that change the grid, see Callbacks in grid.hpp.
@@ -148,7 +148,7 @@ public:
         nearest_->push_back(found);
         std::push_heap(nearest_->begin(), nearest_->end());
     }
-    /// Infinity until `count` proxies are kept; afterwards their largest key.
+    /// Infinity until `count` proxies are kept; afterwards their largest key. -1 if `count` is 0.
     [[nodiscard]] Scalar limit() const noexcept {
         if (nearest_->size() < count_) {
             return std::numeric_limits<Scalar>::infinity();
@@ -156,8 +156,8 @@ public:
         return count_ == 0 ? Scalar(-1) : nearest_->front().key;
     }
 
-    /// Sorts the vector by ascending key, and returns it. Call sort() once, after the query: until then, the vector
-    /// is a heap. Cost: O(count log count).
+    /// Sorts the vector by ascending key, and returns it. Call sort() once, after the last query with this
+    /// collector: until then, the vector is a heap. Cost: O(count log count).
     std::span<const KeyedProxy<Scalar>> sort() {
         std::sort_heap(nearest_->begin(), nearest_->end());
         return *nearest_;

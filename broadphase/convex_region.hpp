@@ -22,8 +22,8 @@ enum class Containment : std::uint8_t { touching, inside };
 
 /// Which boxes count as touching. exact: boxes that share a point with the volume. byPlanes: faster, but also finds
 /// a few boxes outside the volume, near its edges. byPlanes rejects a box only if it lies wholly outside one
-/// plane of the volume, or if the projections of box and volume along the x axis do not touch. Containment::inside
-/// ignores Touch.
+/// plane of the volume, or if the projections of box and volume onto the yz plane do not touch.
+/// Containment::inside ignores Touch.
 enum class Touch : std::uint8_t { exact, byPlanes };
 
 /// Finds every box that touches a convex volume, or that lies wholly inside it (see Containment). The volume is the
@@ -31,8 +31,8 @@ enum class Touch : std::uint8_t { exact, byPlanes };
 /// wholly inside the volume need no test. Cost: as Grid::visit().
 ///
 /// The volume contains its surface. Because of rounding, queries may also find boxes outside, at a distance up to
-/// about 1e-6 of the coordinates (1e-9 in double precision). Without planes, the volume is all of space. A
-/// volume is empty if it contains no point, or if a plane has a NaN or an infinite normal.
+/// about 1e-6 times the largest coordinate (double precision: 1e-9 times). Without planes, the volume is all of
+/// space. A volume is empty if it contains no point, or if a plane has a NaN or an infinite normal.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT ConvexRegion {
 public:

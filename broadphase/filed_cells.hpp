@@ -35,12 +35,13 @@ struct FiledCell {
 /// All cells that contain proxies, and the proxies in no cell. Proxies with a NaN box are in neither list.
 template <class Scalar>
 struct FiledCells {
-    std::vector<FiledCell<Scalar>> cells;  ///< the fullest cell first
+    std::vector<FiledCell<Scalar>> cells;  ///< sorted by load, the largest first
     std::vector<ProxyId> unfiled;          ///< proxies in no cell, sorted by id
 };
 
 /// Lists all cells that contain proxies, and the proxies in no cell. Unlike a query, it does not sort changed proxies
-/// into cells (except after a shiftOrigin() that moved cells). Threads: as queries. Cost: O(n log n) for n proxies.
+/// into cells (except to finish a shiftOrigin() or a failed update()). Threads: as queries. Cost: O(n log n) for n
+/// proxies.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT FiledCells<Scalar> filedCells(const Grid<Scalar>& grid);
 

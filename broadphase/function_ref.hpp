@@ -36,8 +36,8 @@ public:
               return called(std::forward<Arguments>(arguments)...);
           }) {}
 
-    /// operator() returns adapter(callable, arguments...). The adapter's type must have no data members, like a
-    /// lambda without captures.
+    /// After this constructor, operator() returns adapter(callable, arguments...). The adapter's type must have no
+    /// data members, like a lambda without captures.
     template <class Callable, class Adapter>
         requires(std::is_empty_v<Adapter>&&
                      std::is_invocable_r_v<Result, Adapter, Callable&, Arguments...>)

@@ -4,14 +4,14 @@
 // The grid: stores the boxes of up to 2^28 proxies in the cells of a spatial hash, and finds them in queries.
 //
 // A frame    Move the proxies that changed, then call update() once, or Pairs::update() if the grid has Pairs.
-// Queries    see every change immediately, because they also read a list of changes. When reading this list has cost
-//            a third of an update, a query sorts the proxies into cells. A grid that is never updated stays correct,
-//            with bounded memory.
+// Queries    see every change immediately, because they also read a list of changes. When all reads of this list
+//            together have cost a third of an update, a query sorts the proxies into cells. A grid that is never
+//            updated stays correct, with bounded memory.
 // Threads    Queries are const: any number may run at the same time, and collectors may run queries too. During a
 //            non-const call, no other thread may use the grid.
 // Units      metres, or any other unit of length used throughout
 // Bad data   A query never finds a box with a NaN. nanCount() counts such boxes, and the message handler reports the
-//            first. overlaps() decides exactly for infinite, huge and inverted boxes.
+//            first. Infinite, huge and inverted boxes are valid: overlaps() defines exactly which boxes they touch.
 // Denormals  If threads flush denormals (below 1.2e-38; double: 2.2e-308) to 0, more boxes touch. All threads must
 //            use the same mode.
 // Callbacks  A collector may query the grid. In visit(), it may also change the grid, if no other thread queries
@@ -137,8 +137,8 @@ public:
     /// Exception: trembling or slow proxies with slack (GridConfig::slack) become mobile. Multiples of a large power
     /// of two, such as 1024 m, round fewest boxes. On std::bad_alloc, changes nothing.
     /// Asserted: the shift is finite. If not, the call does nothing.
-    /// Cost: up to three passes over all boxes. If cells change, plus the cost of an update(), in this call or in the
-    /// next query or update().
+    /// Cost: up to three passes over all boxes. If proxies must be sorted into cells again, plus the cost of an
+    /// update(), in this call or in the next query or update().
     std::size_t shiftOrigin(const Point& shift);
 
     /// True when the id belongs to a proxy of this grid that was not removed.
@@ -156,8 +156,8 @@ public:
         return static_cast<std::uint32_t>(store_.proxies.records.size());
     }
 
-    /// Returns the id of the proxy with this index; a null id if no proxy has it. It converts the bits of
-    /// CollectBits to ids. Cost: O(1).
+    /// Returns the id of the proxy with this index, such as the number of a bit that CollectBits set; a null id if no
+    /// proxy has this index. Cost: O(1).
     [[nodiscard]] ProxyId idAt(std::uint32_t index) const noexcept {
         return index < indexLimit() && store_.proxies.isAlive(index) ? store_.proxies.idOf(index)
                                                                      : ProxyId{};
@@ -182,9 +182,10 @@ public:
     /// collectors.hpp): once each, unless the collector changes the proxy. Returns counts of the work.
     /// Cost: grows with the cells that the region touches, up to about one test for each proxy of the grid, or 16
     /// tests for each if many cells share hash buckets. Plus one test for each proxy that changed since the last sort
-    /// into cells. A region with a NaN tests only these changed proxies, and with bounds(), the proxies in no cell
-    /// (filed_cells.hpp). In a cell with hundreds of proxies, regions with bounds() usually test only boxes near the
-    /// region along one axis (the axis that separates these boxes best), and boxes much longer than average along it.
+    /// into cells. A region with a NaN tests only these changed proxies. If this region has bounds(), it also tests
+    /// the other proxies in no cell (filed_cells.hpp). In a cell with hundreds of proxies, regions with bounds()
+    /// usually test only boxes near the region along one axis (the axis that separates these boxes best), and boxes
+    /// much longer than average along it.
     template <class Region, class Collector>
     QueryCost visit(const Region& region, Collector& collector) const;
 
@@ -197,7 +198,7 @@ public:
                         ParallelFor parallelFor = serialFor) const;
 
     /// Edge [m] of the cells in visitCell(), cellAt() and cellsOf(): GridConfig::cellSize, or if that is 0, the
-    /// finest size chosen at the last update (1 before the first update, or for an empty grid).
+    /// finest size chosen at the last update (1 if none was chosen, as for an empty grid).
     [[nodiscard]] Scalar cellSize() const noexcept { return store_.tables.cellSize; }
 
     /// Sorts changed proxies into cells if that costs less than `count` queries that read the list of changes. Call
@@ -205,8 +206,8 @@ public:
     /// it itself. Cost: O(1), or as update().
     void expectQueries(std::size_t count) const { store_.expectQueries(count); }
 
-    /// Like expectQueries(), for rays. Also builds the box trees that make rays fast, if `count` rays are worth it.
-    /// Cost: O(1), or as update() and a sort of the proxies.
+    /// Like expectQueries(), for rays. Also builds the box trees that make rays fast, if the rays cast so far and
+    /// `count` more cost as much as building them. Cost: O(1), or as update() and a sort of the proxies.
     void expectRays(std::size_t count) const { store_.expectRays(count); }
 
     /// Offers every proxy whose cellsOf() include `cell` to the collector, but never a proxy whose box is not finite.
@@ -232,7 +233,7 @@ public:
     /// proxies share cells.
     UpdateCost update(ParallelFor parallelFor = serialFor);
 
-    /// Number of times that updates and queries sorted the mobile proxies into cells.
+    /// Number of times that the grid sorted the mobile proxies into cells.
     [[nodiscard]] std::uint64_t filingCount() const noexcept { return store_.tables.filingCount; }
 
     /// Bytes held, including unused capacity.

@@ -22,16 +22,16 @@ struct GridConfig {
     /// to 1,000,000.
     std::uint32_t updatesBeforeRest = 8;
 
-    /// How far [m] a trembling or slow proxy may move before the grid sorts it into a cell again. Slack makes such
-    /// proxies cheaper; results stay exact. If empty, the grid derives the slack from each proxy's motion. 0 means no
-    /// slack. Valid: 0 to 1e30.
+    /// How far [m] per axis a trembling or slow proxy may be from where it was sorted into a cell, before the grid
+    /// sorts it again. Slack makes such proxies cheaper; results stay exact. If empty, the grid chooses a slack for
+    /// each proxy from its motion. 0 means no slack. Valid: 0 to 1e30.
     std::optional<double> slack{};
 
     friend bool operator==(const GridConfig&, const GridConfig&) = default;
 };
 
-/// Returns a sentence that names the invalid field and its valid range; empty for a valid configuration. Constructors
-/// throw std::invalid_argument with this sentence. To avoid exceptions, call configError() first.
+/// Returns a sentence that names the invalid field and its valid range; empty for a valid configuration. Grid
+/// constructors throw std::invalid_argument with this sentence. To avoid exceptions, call configError() first.
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string configError(const GridConfig& config);
 
 }  // namespace hashphase

@@ -9,10 +9,10 @@
 //     snapshot.restore(pairs);  // back to the saved state
 //
 // Restored  After restore(), calls give the same results, order, cost and new ids as after save(). Only
-//           populationNumber() differs. After read(), order and cost may differ, too.
+//           populationNumber() differs. If read() filled the snapshot, order and cost may differ, too.
 // Ids       After restore(), forget ids of proxies that were added after save(): new proxies may get equal ids.
-// Memory    about as many bytes as the grid; the snapshot keeps its memory for the next save(). On std::bad_alloc,
-//           restore() changes nothing, and save() leaves the snapshot empty.
+// Memory    about as many bytes as the grid, its Pairs and Sweeps; the snapshot keeps its memory for the next save().
+//           On std::bad_alloc, restore() changes nothing, and save() leaves the snapshot empty.
 // Threads   During a call, no other thread may use the grid or this object.
 // Misuse    Asserted: this thread runs no query; if the grid has Pairs, you pass the Pairs. restore() needs a saved
 //           state and an equal GridConfig. It needs Pairs if and only if Pairs were saved, and Sweeps if and only if
@@ -47,12 +47,12 @@ public:
     GridSnapshot(GridSnapshot&& other) noexcept;
     GridSnapshot& operator=(GridSnapshot&& other) noexcept;
 
-    /// Saves a grid without Pairs.
+    /// Saves a grid that has no Pairs.
     void save(const Grid<Scalar>& grid);
     /// Saves the Pairs, their grid, and their Sweeps, if any.
     void save(const Pairs<Scalar>& pairs);
 
-    /// Restores the saved state into a grid without Pairs: the saved grid, or another grid with an equal GridConfig.
+    /// Restores the saved state into a grid that has no Pairs: the saved grid, or another with an equal GridConfig.
     void restore(Grid<Scalar>& grid) const;
     /// Restores the saved state into the Pairs, their grid, and their Sweeps, if any.
     void restore(Pairs<Scalar>& pairs) const;

@@ -15,8 +15,8 @@
 // Failure  Calls can throw std::bad_alloc, and exceptions of the filter. If update() throws, the next update()
 //          reports all changes since the last update() that returned. Any other call that throws changes nothing.
 // Memory   grows with proxies and pairs. Pairs normally remembers refused candidates: all other candidates are pairs.
-//          Above a total of 32 per proxy plus four per pair, it remembers the pairs instead. In that case, update()
-//          searches again for all overlaps of changed proxies.
+//          Above 32 refused candidates per proxy plus four per pair, it remembers the pairs instead. In that case,
+//          update() searches again for all overlaps of changed proxies.
 // Late     You may create Pairs for a grid that has proxies, and replace Pairs between two updates.
 // Misuse   Asserted: a grid has at most one Pairs; the filter calls only const functions of the grid and Pairs.
 
@@ -47,8 +47,8 @@ public:
     Pairs& operator=(const Pairs&) = delete;
 
     /// Replaces the sweeps; nullptr means none. Call it before you destroy the old sweeps. The next update() reports
-    /// the changes. Asserted: `sweeps` belong to this grid; this thread runs no query. Cost: O(sweeping proxies of
-    /// the old and new sweeps).
+    /// the pairs that begin or end because of this. Asserted: `sweeps` belong to this grid; this thread runs no
+    /// query. Cost: O(sweeping proxies of the old and new sweeps).
     void setSweeps(Sweeps<Scalar>* sweeps);
 
     /// Ends the frame: updates the grid, and returns the pairs that began or ended since the last update. Each change
@@ -63,13 +63,13 @@ public:
     PairChanges update(PairFilter filter = acceptAllPairs, ParallelFor parallelFor = serialFor) &;
 
     /// Finds pairs of this proxy that began to overlap since the last update. Returns them as born; update() does not
-    /// repeat them. For sweeping proxies, only the boxes at the start of paths count. May also return died pairs:
-    /// calls after the last update() returned them as born, and then one of their proxies was removed. Asserted: the
-    /// proxy is alive. Cost: as a box query.
+    /// repeat them. For sweeping proxies, only the boxes at the start of paths count. May also return died pairs.
+    /// Calls since the last update() returned these pairs as born, and afterwards a proxy of the pair was removed.
+    /// Asserted: the proxy is alive. Cost: as a box query.
     PairChanges findPairsNow(ProxyId id, PairFilter filter) &;
 
-    /// Like findPairsNow(id, filter), but only for proxies in `others`, which must contain no duplicates. Skips ids
-    /// that are not alive. Cost: O(others).
+    /// Like findPairsNow(id, filter), but finds only pairs with proxies in `others`, which must contain no
+    /// duplicates. Skips ids that are not alive. Cost: O(others).
     PairChanges findPairsNow(ProxyId id, std::span<const ProxyId> others, PairFilter filter) &;
 
     [[deprecated("findPairsNow()")]] PairChanges announce(ProxyId id, PairFilter filter) & {
@@ -82,9 +82,9 @@ public:
     }
 
     /// Asks the filter again about each proxy that overlaps this proxy now, or touched it along a path at the last
-    /// update. Returns born and died pairs. As in findPairsNow(), died pairs may have removed proxies. Asserted: the
-    /// proxy is alive. Cost: as a few box queries. The first call after many changes costs at most as much as
-    /// update().
+    /// update. Returns born and died pairs. Died pairs may include pairs of removed proxies: see findPairsNow().
+    /// Asserted: the proxy is alive. Cost: as a few box queries. The first call after many changes costs at most as
+    /// much as update().
     PairChanges refilter(ProxyId id, PairFilter filter) &;
 
     /// refilter() for many proxies, in one pass. Asks about each candidate once, in ascending order. `ids` may
@@ -108,7 +108,7 @@ public:
     PairChanges ignore(std::span<const ProxyPair> pairs) &;
 
     /// Ends ignore(). If the groups allow the pair, and the two proxies overlap now or touched along a path at the
-    /// last update, asks the filter at once. Returns an accepted pair as born. May also return died pairs: see
+    /// last update, asks the filter immediately. Returns an accepted pair as born. May also return died pairs: see
     /// findPairsNow(). Skips pairs that are not ignored. Cost: O(1) per pair.
     PairChanges stopIgnoring(const ProxyPair& pair, PairFilter filter) &;
     PairChanges stopIgnoring(std::span<const ProxyPair> pairs, PairFilter filter) &;

@@ -19,7 +19,7 @@ namespace hashphase {
 /// Identifies one proxy of one grid. ProxyId{} is null. Ids are ordered by index, then by generation.
 struct ProxyId {
     /// Small and dense: use it as an index into your own arrays. It is below the largest number of proxies that were
-    /// ever alive at once, where a removed proxy counts as alive until the next update.
+    /// ever alive at the same time, where a removed proxy counts as alive until the next update.
     std::uint32_t index = 0;
     /// Distinguishes a proxy from earlier proxies with the same index.
     std::uint32_t generation = 0;

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Finds the neighbours of all agents within a radius, in one pass, as AI needs in every frame.
+// Finds, for every agent, the other agents within a radius. Does so in one pass, as AI needs in every frame.
 //
 //     search.take(grid, 10);
 //     search.forEach([&](std::uint32_t agent, std::span<const std::uint32_t> neighbours) { ... });
 //
 // A frame     Call take(), which copies the positions of all proxies. Then search any number of times.
-// Agents      An agent is a proxy at the centre of its box (positionOf() in position_region.hpp). Each take() numbers
-//             the agents from 0, in spatial order.
+// Agents      An agent is a proxy as a point: the centre of its box (positionOf() in position_region.hpp). Each
+//             take() numbers the agents from 0, in spatial order.
 // Neighbours  The neighbours of an agent are the other agents with (dx^2 + dy^2) + dz^2 <= radius^2. Each operation
-//             rounds to Scalar. For radii outside 2^-60 to 2^60 (double: 2^-480 to 2^480), dx, dy, dz and the radius
-//             are first multiplied by the same power of two. If a finds b, b finds a. Results are equal on all
-//             instruction sets, with any number of threads.
+//             rounds to Scalar. For radii below 2^-60 or above 2^60 (double: below 2^-480 or above 2^480), dx, dy, dz
+//             and the radius are first multiplied by the same power of two. If a finds b, b finds a. Results are
+//             equal on all instruction sets, with any number of threads.
 // Bad data    A proxy with a NaN, infinite or inverted box is not an agent: see leftOutCount(). A negative or NaN
 //             radius gives no neighbours. An infinite radius gives all other agents.
-// Threads     Const functions may run on several threads at once. During other calls, no other thread may use this
-//             object, except that visit() may call const functions. take() reads the grid, as queries do.
+// Threads     Const functions may run on several threads at the same time. During other calls, no other thread may
+//             use this object, except that visit() may call const functions. take() reads the grid, as queries do.
 // Units       metres, or the grid's unit of length
 // See also    Neighbours (neighbours.hpp), which lists pairs of boxes.
 

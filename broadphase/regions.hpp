@@ -16,7 +16,8 @@
 // your regions a volume().
 //
 // Others   PositionRegion (positions, not boxes), CellsRegion (estimates the proxies in a ball), MovingBoxRegion
-//          (first contact of a moving box), ConvexRegion (frusta), and any class of yours with these members
+//          (first contact of a moving box), ConvexRegion (frusta), and any class of yours that has key(), and
+//          bounds() or segment()
 // Units    metres; keys differ: m^2 in SphereRegion, a fraction from 0 to 1 in RayRegion
 // NaN      A region with a NaN is empty: queries find no box.
 // Threads  values; use them from any thread
@@ -97,7 +98,7 @@ private:
 };
 
 /// Every box that a ray hits. The ray is a segment, or a box that moves along the segment (a "fat" ray). The key
-/// is the fraction of the segment at which the ray enters the box, 0 if the ray begins inside.
+/// is the fraction of the segment at which the ray enters the box, 0 if the start of the ray touches the box.
 ///
 /// Touching a face, an edge or a corner is a hit. If rounding leaves doubt, the ray hits. The length may be 0. If an
 /// end or the length is infinite, or any number is NaN, the region is empty.

@@ -3,8 +3,8 @@
 
 // Sweeps are for proxies that move far in a frame, such as bullets, and must not miss pairs along their paths.
 //
-// A sweeping proxy pairs with every proxy that it touches along its path. Two sweeping proxies pair if they touch at
-// the same time. Crossing paths are not enough.
+// A sweeping proxy pairs with every proxy that it touches along its path. Two sweeping proxies pair if their moving
+// boxes touch at some moment. Crossing paths are not enough.
 //
 //     Sweeps<float> sweeps(grid);
 //     Pairs<float> pairs(grid, &sweeps);
@@ -17,10 +17,10 @@
 //           whole path. Sweeps::visit() searches along the path, more exactly.
 // Modes     All modes except Sweep::none find the same pairs, at different costs: the exact firstContact() confirms
 //           each pair.
-// Cost      A sweep takes time even at low speed. Sweep::box searches the box around the path. Other proxies cost no
-//           more than without sweeps.
-// Threads   visit() may run on several threads at once. During other calls, no other thread may use the grid or
-//           Sweeps.
+// Cost      A sweep takes time even if its path is short. With Sweep::box, the cost grows with the box around the
+//           path. Proxies that do not sweep cost no more than without sweeps.
+// Threads   visit() may run on several threads at the same time. During other calls, no other thread may use the
+//           grid or Sweeps.
 // Units     metres; times are fractions of the frame, 0 to 1
 // Bad data  A proxy with a NaN or infinite displacement does not sweep. The message handler reports the first case.
 // Misuse    Asserted: the grid contains the id.
@@ -55,9 +55,9 @@ public:
     Sweeps(const Sweeps&) = delete;
     Sweeps& operator=(const Sweeps&) = delete;
 
-    /// Lets the proxy's box sweep by `displacement` [m] in each frame, until the next set(). A zero displacement or
-    /// Sweep::none ends the sweep. On std::bad_alloc, changes nothing. Asserted: not called within visitEach(), a
-    /// ConvexRegion query or a PairFilter (grid.hpp, Callbacks). Cost: O(1) amortised.
+    /// Lets the proxy's box sweep by `displacement` [m] in each frame, until the next set() of this proxy. A zero
+    /// displacement or Sweep::none ends the sweep. On std::bad_alloc, changes nothing. Asserted: not called within
+    /// visitEach(), a ConvexRegion query or a PairFilter (grid.hpp, Callbacks). Cost: O(1) amortised.
     void set(ProxyId id, const Vector3<Scalar>& displacement, Sweep sweep = Sweep::automatic);
 
     /// Lets `way.box` sweep instead of the box in the grid. The proxy's pairs depend only on `way`. Grid queries

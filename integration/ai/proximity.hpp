@@ -33,8 +33,8 @@ HASHPHASE_AI_EXPORT QueryCost findWithin(const Grid<Scalar>& grid,
 /// (cells_region.hpp). Finds all proxies within the radius, and some other proxies, whose boxes are at most
 /// sqrt(3) * (radius + cell size) away. If agents are half as large as cells, only a part of the found proxies is
 /// within the radius: 10 % for a radius of 1 cell, 20 % for 2, 30 % for 4 and 40 % for 8 cells. To list proxies,
-/// findWithin() is faster. To count proxies within a radius of several cells, use Grid::visit() with CellsRegion and
-/// CollectCount. Returns the cost. Cost: Grid::visit() of the cells, and sorting.
+/// findWithin() is faster. To estimate how many proxies are within a radius of several cells, use Grid::visit() with
+/// CellsRegion and CollectCount. Returns the cost. Cost: Grid::visit() of the cells, and sorting.
 template <class Scalar>
 HASHPHASE_AI_EXPORT QueryCost estimateWithin(const Grid<Scalar>& grid,
                                              const Vector3<std::type_identity_t<Scalar>>& position,

@@ -5,7 +5,8 @@
 //
 // Counted   A proxy counts once, in the cell that contains its position (position_region.hpp). A position on the
 //           border of two cells belongs to the cell with the larger index.
-// Threads   scan() queries the grid. During scan(), no other thread may use this object.
+// Threads   For scan(), the thread rules of grid queries hold (grid.hpp). During scan(), no other thread may use this
+//           object.
 // Bad data  All counts are 0 if the cell size, centre or heading is not finite, or the cell size is not positive.
 // Misuse    Asserted: a scan has at most kMostCounts counts.
 
@@ -33,10 +34,10 @@ struct RadarWindow {
     std::uint32_t layers = 0;  ///< number of cells along the up axis; 0: one layer for all heights
     UpAxis up = UpAxis::y;
 
-    /// If `heading` is unset, cell borders are at multiples of the cell size. Counts of resting proxies do not change
+    /// If `heading` is unset, cell borders are at multiples of `cellSize`. Counts of unmoved proxies do not change
     /// while the centre moves within a cell, or if you shift the grid's origin and the centre together by a multiple
-    /// of the cell size. The first column is columns / 2 cells (rounded down) before the cell that contains the
-    /// centre. The same rule holds for rows and layers.
+    /// of `cellSize`. The first column is columns / 2 cells (rounded down) before the cell that contains the centre.
+    /// The same rule holds for rows and layers.
     ///
     /// A heading [rad] turns the window about the up axis, and the middle of the window is exactly at `center`. In
     /// coordinates (column axis, row axis), row indices grow along (sin, cos) of the heading, column indices along

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// The paper's AI routine: every agent takes the rarest colour around it. Source: Hastings, Mesit and Guha,
+// The paper's AI routine: every agent takes the rarest colour (a number) around it. Source: Hastings, Mesit and Guha,
 // "Optimization of Large-Scale, Real-Time Simulations by Spatial Hashing".
 //
 // Frame     Updates read all colours before they change any, so the order of agents does not matter.
-// Threads   An update is a query of the grid: the same thread rules hold. During an update, no other thread may use
+// Threads   For updates, the thread rules of grid queries hold (grid.hpp). During an update, no other thread may use
 //           this object. Filters run on all threads of `parallelFor`.
 // Units     as the grid, usually metres
 // Bad data  Agents without a position (position_region.hpp) keep their colours. If the radius is negative or NaN,
@@ -29,7 +29,7 @@ public:
     /// Agents are the proxies that `filter` accepts. Gives every agent the colour, from 0 to colourCount - 1, that
     /// the fewest other agents within `radius` [m] have. If colours are equally rare, takes the lowest. `colours` is
     /// indexed by ProxyId::index. Calls `changes` once for each agent. Agents that `changes` refuses keep their
-    /// colours, but neighbours count them. Returns the cost of counting. Asserted: colourCount is 1 to
+    /// colours, but neighbours count them. Returns the cost of counting. Asserted: colourCount is from 1 to
     /// RadiusSearch::kMostGroups, and each agent has an element in `colours`. Cost: as RadiusSearch::countGroups().
     QueryCost update(const Grid<Scalar>& grid, Scalar radius, std::uint32_t colourCount,
                      std::span<std::uint32_t> colours, ProxyFilter filter = acceptAll,
@@ -43,7 +43,7 @@ public:
                          std::span<std::uint32_t> colours, std::span<const ProxyId> agents,
                          ProxyFilter filter = acceptAll, ParallelFor parallelFor = serialFor);
 
-    /// Holds the agents of the last update().
+    /// Returns the search that holds the agents of the last update().
     [[nodiscard]] const RadiusSearch<Scalar>& search() const noexcept { return search_; }
     [[deprecated("search()")]] [[nodiscard]] const RadiusSearch<Scalar>& crowd() const noexcept {
         return search_;

@@ -3,8 +3,8 @@
 
 // Finds the proxies that a viewer sees: in range, in a cone, and not hidden by a blocker.
 //
-// Seen      A proxy is seen if its position (position_region.hpp) is in the cone, and the line from the eye to the
-//           position meets no blocker's box before the position. To test shapes, use
+// Seen      A proxy is seen if its position (position_region.hpp) is in range and in the cone, and the line from the
+//           eye to the position meets no blocker's box before the position. To test shapes, use
 //           SpatialHashBroadphase::closestRay().
 // Blockers  A filter chooses blockers. The viewer, the target, and boxes that contain the eye (such as a house) never
 //           block.
@@ -42,8 +42,9 @@ struct Viewer {
     ProxyId self{};  ///< the viewer's own proxy, if it has one
 };
 
-/// A query region: finds every proxy whose position is in the viewer's cone, even behind blockers. The key of a found
-/// proxy is its squared distance [m^2] from the eye. A position at the eye is in every cone.
+/// A query region: finds every proxy whose position is in the viewer's range and cone, even behind blockers, and even
+/// the viewer's own proxy. The key of a found proxy is its squared distance [m^2] from the eye. A position at the eye
+/// is in every cone.
 template <class Scalar>
 class HASHPHASE_AI_TEMPLATE_EXPORT SightRegion {
 public:

@@ -6,13 +6,14 @@
 //
 // Frame      Move bodies and zones, then call update() once. In each zone, update() reports one event for each proxy
 //            that is inside or has just left.
-// Grid       Zones are not in the grid. Before you pass another grid, call forgetOccupants(). After
-//            Grid::shiftOrigin(), call set() for every zone, with its new position, before the next update().
-//            Otherwise occupants leave.
+// Grid       Zones are not in the grid. Before you pass another grid to update(), call forgetOccupants(). After
+//            Grid::shiftOrigin(), call set() for every zone, with its new position, before the next update():
+//            without set(), occupants leave.
 // Rollback   A copy of this object is a snapshot, occupants included. To roll back, assign the copy, and call
-//            GridSnapshot::restore(). The next update() repeats the events. Earlier spans are invalid.
-// Threads    Const functions may run on several threads at once. During other calls, no other thread may use this
-//            object. update() is a query of the grid.
+//            GridSnapshot::restore(). If you repeat the frames after the snapshot, update() reports their events
+//            again. Earlier spans are invalid.
+// Threads    Const functions may run on several threads at the same time. During other calls, no other thread may
+//            use this object. For update(), the thread rules of grid queries hold (grid.hpp).
 // Callbacks  Run on all threads of `parallelFor`. Asserted: callbacks do not change or update zones.
 // Failure    If memory runs out or a callback throws, occupants do not change. The next update() reports the missed
 //            events.
@@ -111,7 +112,7 @@ public:
     [[nodiscard]] const Zone<Scalar>& zone(ZoneId id) const;
     [[nodiscard]] std::size_t size() const noexcept { return slots_.size() - freeSlots_.size(); }
 
-    /// Removes the occupants of all zones, but reports no events. Call it before you pass another grid.
+    /// Removes the occupants of all zones, but reports no events. Call it before you pass another grid to update().
     void forgetOccupants() noexcept;
 
     // --- Frame -----------------------------------------------------------------------------------
@@ -125,8 +126,8 @@ public:
 
     // --- Queries ---------------------------------------------------------------------------------
 
-    /// The proxies that were in the zone at its last search, sorted by id. Valid until the next update(), also if
-    /// zones are added.
+    /// The proxies that were in the zone at its last search, sorted by id. Valid until the next update() or
+    /// forgetOccupants(), or until the zone is removed. Adding zones does not affect this.
     [[nodiscard]] std::span<const ProxyId> occupants(ZoneId id) const;
 
     /// Finds the zones whose current shapes contain the point [m]. Replaces `found`, sorted by id. Finds nothing if

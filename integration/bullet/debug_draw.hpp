@@ -39,9 +39,9 @@ struct CellDrawing {
 
 /// The result of drawCells().
 struct DrawnCells {
-    std::size_t cells = 0;         ///< number of cells that have proxies
+    std::size_t cells = 0;         ///< number of cells that have proxies, drawn or not
     std::size_t largestLoad = 0;   ///< load of the fullest cell
-    std::size_t unfiled = 0;       ///< number of proxies in no cell
+    std::size_t unfiled = 0;       ///< number of proxies in no cell, drawn or not
     std::size_t lines = 0;         ///< number of lines drawn
     std::size_t linesLeftOut = 0;  ///< lines not drawn because of CellDrawing::mostLines
 };

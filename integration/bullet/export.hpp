@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Export macros of the shared libraries hashphase_bullet and hashphase_bullet_float64: see broadphase/export.hpp.
-// CMake and pkg-config set HASHPHASE_BULLET_IS_STATIC to 1 if these two libraries are static (like Bullet), but the
-// other libraries are shared.
+// Export macros of the libraries hashphase_bullet and hashphase_bullet_float64: see broadphase/export.hpp. If these
+// two are static (because Bullet is static), but hashphase's other libraries are shared, CMake and pkg-config set
+// HASHPHASE_BULLET_IS_STATIC to 1.
 
 #include <broadphase/export.hpp>
 

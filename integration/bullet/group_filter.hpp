@@ -17,8 +17,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 ///     const GroupFilter enemies(broadphase, {.mask = kEnemyGroup});
 ///     const Picked<btScalar> picked = pickNearest(broadphase.grid(), ray, enemies);
 ///
-/// Reads the proxy's present group and mask. The broadphase must outlive the filter. Cost: O(1). Threads: any number
-/// at once.
+/// Each call reads the proxy's group and mask again. The broadphase must outlive the filter. Cost: O(1). Threads: any
+/// number at the same time.
 class GroupFilter {
 public:
     /// The asker's group and mask, like m_collisionFilterGroup and m_collisionFilterMask of a ray callback. By

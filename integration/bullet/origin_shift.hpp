@@ -5,7 +5,7 @@
 // jitter and joints drift. Shift the origin from time to time to keep it near the player. Contacts stay, and no body
 // wakes up.
 //
-// A frame  Call shiftWorldOrigin() between two steps.
+// When     Call shiftWorldOrigin() between two steps.
 // Shift    Shift towards the bodies, by multiples of a power of two such as 1024 m. In that case, their coordinates
 //          are not rounded, and relative positions keep all bits.
 // Threads  No other thread may use the world during the call.
@@ -28,9 +28,9 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// Moves the world's origin to `shift` [m]. Subtracts `shift` from the transforms and interpolation transforms of
 /// collision objects, from motion states, contact points, joints between a body and the world, and the broadphase's
 /// boxes. Velocities and sleep states do not change. All contacts and pairs persist. Reads and sets each motion
-/// state, even if its body sleeps. Shift everything else yourself: bodies outside the world, zones, cameras,
-/// terrains. Returns whether the world was shifted. If false, nothing has changed. Cost: O(objects + contacts +
-/// joints), plus SpatialHashBroadphase::shiftOrigin().
+/// state, even if its body sleeps. Shift everything else yourself: bodies outside the world, and hashphase's Zones,
+/// Camera and Terrain. Returns whether the world was shifted. If false, nothing has changed. Cost: O(objects +
+/// contacts + joints), plus SpatialHashBroadphase::shiftOrigin().
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btDynamicsWorld& world,
                                                             SpatialHashBroadphase& broadphase,
                                                             const btVector3& shift);

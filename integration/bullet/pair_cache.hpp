@@ -7,7 +7,8 @@
 //     hashphase::PairCache pairCache;
 //     btDbvtBroadphase broadphase(&pairCache);
 //
-// Threads   Several threads may call const members at once. During other calls, no other thread may use the cache.
+// Threads   Several threads may call const members at the same time. During other calls, no other thread may use the
+//           cache.
 // Pointers  Pairs move in memory when a pair is added or removed, and in sortOverlappingPairs() and
 //           releaseUnusedMemory(). With PairOrder::canonical, pairs also move when the whole array is read: by
 //           processAllOverlappingPairs(), getOverlappingPairArray() or the non-const getOverlappingPairArrayPtr().
@@ -16,10 +17,11 @@
 //           change the cache, and so may the callback of processAllOverlappingPairs(). The filter must not change the
 //           cache.
 // Removal   If your program removes a pair, the next calculateOverlappingPairs() of a SpatialHashBroadphase adds it
-//           again, unless its proxies have separated or the filter refuses it. With PairOrder::canonical, the
-//           algorithms of pairs that removeOverlappingPair() and update() remove outside
-//           processAllOverlappingPairs() are freed later: when the whole array is next read, or when the pairs of
-//           any proxy are next removed or cleaned. Other calls free algorithms at once.
+//           again, unless its proxies have separated or the filter refuses it. A broadphase that got the cache as a
+//           btOverlappingPairCache* adds it only when its proxies meet again. With PairOrder::canonical, the
+//           algorithms of pairs that removeOverlappingPair() and update() remove outside processAllOverlappingPairs()
+//           are freed later: when the whole array is next read, or when the pairs of any proxy are next removed or
+//           cleaned. In all other cases, algorithms are freed immediately.
 // Memory    Throws std::bad_alloc when memory runs out. In that case, a call for one pair has changed nothing. A call
 //           for many pairs may have removed some or all of its pairs. It has added none, or some if it works like
 //           single calls (see update()). Removing one proxy's pairs always works; without memory, it scans all
@@ -62,8 +64,9 @@ enum class PairOrder {
     arrival,
     /// When the whole array is read, pairs are sorted ascending by the keys of both proxies. Equal sets of pairs have
     /// an equal order under any broadphase. For programs that set boxes back to an earlier frame; WorldSnapshot does
-    /// not need this order. Algorithms are freed in this order too. As a result, all exact broadphases give equal
-    /// manifolds and trajectories. Cost: O(n log n) for n pairs, at the first read after pairs changed.
+    /// not need this order. Algorithms are freed in this order too. As a result, all broadphases that find exactly
+    /// the overlapping pairs give equal manifolds and trajectories. Cost: O(n log n) for n pairs, at the first read
+    /// after pairs changed.
     canonical,
 };
 
@@ -95,7 +98,7 @@ public:
 
     /// Returns false if the unique id of either proxy has changed, for example because a SpatialHashBroadphase
     /// destroyed the proxy. Reads both proxies, so do not call it after a proxy was freed: btDbvtBroadphase frees
-    /// destroyed proxies at once, SpatialHashBroadphase only with unused memory (see its releaseUnusedMemory()).
+    /// destroyed proxies immediately, SpatialHashBroadphase only with unused memory (see its releaseUnusedMemory()).
     [[nodiscard]] bool isUpToDate() const noexcept {
         return static_cast<std::uint32_t>(lower_->m_uniqueId) == ids_ >> 32 &&
                static_cast<std::uint32_t>(upper_->m_uniqueId) == (ids_ & 0xffffffffU);
@@ -171,8 +174,9 @@ public:
     // --- The pairs of one proxy ------------------------------------------------------------------
 
     /// Removes the proxy's pairs one by one: with PairOrder::canonical in canonical order, otherwise in the order of
-    /// Bullet's cache. Frees their algorithms at once. Cost: proportional to the proxy's pairs, plus amortised O(1)
-    /// for each pair added since the last such call. After a sort or a large update(), all pairs count as added.
+    /// Bullet's cache. Frees each pair's algorithm immediately. Cost: proportional to the proxy's pairs, plus
+    /// amortised O(1) for each pair added since the last such call. After a sort or a large update(), all pairs count
+    /// as added.
     void removeOverlappingPairsContainingProxy(btBroadphaseProxy* proxy,
                                                btDispatcher* dispatcher) override;
 
@@ -219,7 +223,7 @@ public:
     /// Unlike Bullet's caches, keeps algorithms and calls no ghost callback.
     void sortOverlappingPairs(btDispatcher* dispatcher) override;
 
-    /// Returns false: pairs are removed at once.
+    /// Returns false: pairs are removed immediately.
     bool hasDeferredRemoval() override { return false; }
 
     // --- Callbacks -------------------------------------------------------------------------------
@@ -243,9 +247,9 @@ public:
         return (a.m_collisionFilterGroup & b.m_collisionFilterMask) != 0 &&
                (b.m_collisionFilterGroup & a.m_collisionFilterMask) != 0;
     }
-    /// Returns the filter callback. If none is set but the broadphase may refuse pairs, returns a callback that
-    /// checks groups and masks. Reason: Bullet's casts of fast bodies call needsBroadphaseCollision() only if there
-    /// is a callback.
+    /// Returns the filter callback. If none is set, but pairs are ignored or the broadphase is a WorldsBroadphase,
+    /// returns a callback that checks groups and masks. Reason: Bullet's casts of fast bodies call
+    /// needsBroadphaseCollision() only if there is a callback.
     btOverlapFilterCallback* getOverlapFilterCallback() override;
     /// Sets the filter callback. NULL removes it.
     void setOverlapFilterCallback(btOverlapFilterCallback* callback) override;
@@ -271,8 +275,8 @@ public:
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Frees unused memory; pairs move. A SpatialHashBroadphase calls this function by itself. Asserted: the filter
-    /// is not running. Cost: O(pairs).
+    /// Frees unused memory; pairs move. A SpatialHashBroadphase calls this function automatically. Asserted: the
+    /// filter is not running. Cost: O(pairs).
     void releaseUnusedMemory() noexcept;
 
     /// Returns a sentence about a broken invariant; empty if all of these hold:

@@ -71,8 +71,9 @@ public:
 
     /// Sets the box of each object as btCollisionWorld::updateAabbs() does. After setForceUpdateAllAabbs(false), sets
     /// only the boxes of active objects. Boxes include Bullet's contact margin and, if m_useContinuous is set, the
-    /// predicted path. If a box is too large, Bullet removes the object from the simulation, and prints a warning.
-    /// Cost: O(objects), plus setAabbs(). Memory: 40 bytes for each object (72 in double precision).
+    /// predicted path. If the box of a non-static object is too large, Bullet does not set it, calls
+    /// setActivationState(DISABLE_SIMULATION), and warns through the debug drawer, once in the program. Cost:
+    /// O(objects), plus setAabbs(). Memory: 40 bytes for each object (72 in double precision).
     void updateAabbs() override {
         if (!aabbs_.update(*this)) {
             World::updateAabbs();

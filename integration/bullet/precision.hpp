@@ -5,9 +5,9 @@
 //
 //     namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE { ... }
 //
-// so that symbols contain the precision. A program with both precisions does not link. Without hashphase, it would
-// link, and fail at run time. Define BT_USE_DOUBLE_PRECISION for the whole program if Bullet was built with it,
-// otherwise nowhere.
+// so that symbols contain the precision. A program that mixes both precisions does not link. Without hashphase, such
+// a program would link, and fail at run time. Define BT_USE_DOUBLE_PRECISION for the whole program if Bullet was
+// built with it, otherwise nowhere.
 
 #ifdef BT_USE_DOUBLE_PRECISION
 #define HASHPHASE_BULLET_NAMESPACE f64

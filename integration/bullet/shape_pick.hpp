@@ -38,9 +38,9 @@ private:
     const SpatialHashBroadphase* broadphase_;
 };
 
-/// Returns the proxy of the nearest object whose shape the ray hits. Its key is the hit's fraction of the ray's
-/// length. Returns a null id if nothing is hit. SpatialHashBroadphase::closestRay() finds the same object, and also
-/// reports the normal at the hit.
+/// Returns the proxy of the nearest object whose shape the ray hits. Ignores the ray's fatness. The key is the hit's
+/// fraction of the ray's length. Returns a null id if nothing is hit. SpatialHashBroadphase::closestRay() finds the
+/// same object, and also reports the normal at the hit.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT KeyedProxy<btScalar> closestShape(
     const SpatialHashBroadphase& broadphase, const RayRegion<btScalar>& ray,
     ProxyFilter filter = acceptAll);

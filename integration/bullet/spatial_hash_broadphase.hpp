@@ -5,18 +5,18 @@
 //
 //     hashphase::SpatialHashBroadphase broadphase;  // instead of btDbvtBroadphase
 //
-// Pairs are exact. createProxy() and setAabb() do not change pairs; calculateOverlappingPairs() does. Exceptions:
-// eagerGroups, and ghosts. A ghost gets its pairs at once when it is created or moved, and when another object is
-// created in its box or jumps into it.
+// Pairs are exact. calculateOverlappingPairs() changes them; createProxy() and setAabb() add pairs for eagerGroups
+// and ghosts only. A ghost gets its pairs immediately: when it is created or moved, and when another object is
+// created in the ghost's box, or moves there so far that the object's old and new boxes do not touch.
 //
 // Threads   Any number of threads may run ray queries, aabbTest(), getAabb(), proxyOf(), idOf(), and queries of
 //           grid() and sweeps() at the same time, also nested. During any other call, no other thread may use the
 //           broadphase, as in Bullet.
 // Units     Any unit of length that the whole world uses. Comments write [m] for it.
-// Clients   btCollisionObjects or NULL. For other types, set eagerGhosts to false, and do not use sweeps,
+// Clients   btCollisionObjects or NULL. For other types, set eagerGhosts to false and sweep to none, and do not use
 //           closestRay() or collisionChecksChanged().
-// Bad data  A box with a NaN makes no pair; the first such box is reported (diagnostics.hpp). Infinite, huge and
-//           inverted boxes are compared exactly by their coordinates. The dispatcher may be NULL.
+// Bad data  A box with a NaN makes no pair; a broadphase reports its first such box (diagnostics.hpp). Infinite, huge
+//           and inverted boxes are compared exactly by their coordinates. The dispatcher may be NULL.
 // Callbacks Callbacks of rayTest(), aabbTest(), closestRay(), the pair cache and the dispatcher may query, and
 //           create, move and destroy proxies; with one of Bullet's own pair caches, they must not destroy proxies. A
 //           query does not report destroyed proxies. It may report or skip a proxy that a callback creates or moves,
@@ -102,10 +102,10 @@ public:
     void getAabb(btBroadphaseProxy* proxy, btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// Calls rayCallback.process() once for every proxy whose box, grown by the cast box (aabbMin, aabbMax), passes
-    /// btRayAabb2() with the callback's own fields. Sees every setAabb() at once, before pairs are calculated. Order:
-    /// roughly from near to far; do not rely on it. A ray with NaN or infinite ends, or of length 0, finds nothing.
-    /// If the square of a ray's length overflows, Bullet computes fields of the callback that are NaN or zero: the
-    /// ray may miss objects, as under btDbvtBroadphase. For such rays, query grid() with a RayRegion. Cost:
+    /// btRayAabb2() with the callback's own fields. Sees every setAabb() immediately, before pairs are calculated.
+    /// Order: roughly from near to far; do not rely on it. A ray with NaN or infinite ends, or of length 0, finds
+    /// nothing. If the square of a ray's length overflows, Bullet computes fields of the callback that are NaN or
+    /// zero: the ray may miss objects, as under btDbvtBroadphase. For such rays, query grid() with a RayRegion. Cost:
     /// proportional to the boxes near the ray; at most one test for each proxy.
     void rayTest(const btVector3& rayFrom, const btVector3& rayTo,
                  btBroadphaseRayCallback& rayCallback,
@@ -124,12 +124,12 @@ public:
                   btBroadphaseAabbCallback& callback) const;
 
     /// Updates the cache's pairs. Afterwards, the cache holds exactly the pairs of overlapping proxies that its
-    /// filter accepts (for ignored pairs, changed groups and masks, and pairs that the program removed, see below).
-    /// With SpatialHashConfig::sweep, it also holds pairs of proxies that meet on their paths. Persisting pairs are
-    /// not touched. First removes the separated pairs, then adds the new pairs, both sorted by ProxyId. Changes and
-    /// order depend on the boxes at the last calculation and now, not on the calls between. Finally, adds pairs again
-    /// that the program removed from a PairCache, unless their proxies separated or the filter refuses them. A cache
-    /// not passed as a PairCache gets such pairs back only when the proxies meet again.
+    /// filter accepts (exceptions: see ignorePair(), and below for changed groups and masks, and pairs that the
+    /// program removed). With SpatialHashConfig::sweep, a fast body pairs instead with the proxies that it meets on
+    /// its path. Persisting pairs are not touched. First removes separated pairs, then adds new pairs, both sorted by
+    /// ProxyId. Changes and order depend on the boxes at the last calculation and now, not on the calls between.
+    /// Finally, adds pairs again that the program removed from a PairCache, unless their proxies separated or the
+    /// filter refuses them. A cache not passed as a PairCache gets such pairs back only when the proxies meet again.
     /// You may write groups and masks at any time. A newly allowed pair begins after the box of one of its proxies
     /// changes. If groups and masks decide (see SpatialHashConfig::filterRefusesMore), the box need not change: call
     /// setAabb() with the old box for the proxy whose group or mask you changed. A pair that is no longer allowed
@@ -142,7 +142,7 @@ public:
         return pairCache_;
     }
 
-    /// Returns the box around all boxes with margins; zero if there are no proxies. Cost: O(proxies).
+    /// Returns the box around all boxes, margins and swept paths; zero if there are no proxies. Cost: O(proxies).
     void getBroadphaseAabb(btVector3& aabbMin, btVector3& aabbMax) const override;
 
     /// If no proxy is alive, resets the broadphase; if one is alive, does nothing. Afterwards, equal calls give the
@@ -162,8 +162,8 @@ public:
 
     /// Sets the box of each proxy, in order, with the result of single calls. Runs on the threads of
     /// SpatialHashConfig::parallelFor. Exceptions: if SpatialHashConfig::sweep is not none, or `proxies` has
-    /// duplicates, all boxes are set on the caller's thread. If setting a box adds pairs at once, the remaining boxes
-    /// are set on the caller's thread. If memory runs out, only some boxes are set: repeat the call. Cost: as
+    /// duplicates, all boxes are set on the caller's thread. If setting a box adds pairs immediately, the remaining
+    /// boxes are set on the caller's thread. If memory runs out, only some boxes are set: repeat the call. Cost: as
     /// setAabb() for each proxy.
     void setAabbs(std::span<btBroadphaseProxy* const> proxies, std::span<const btVector3> aabbMins,
                   std::span<const btVector3> aabbMaxs, btDispatcher* dispatcher);
@@ -183,16 +183,16 @@ public:
     QueryCost closestRay(const btVector3& from, const btVector3& to,
                          btCollisionWorld::RayResultCallback& callback) const;
 
-    /// rayTest() and closestRay() for many rays, each with its own callback. Hits at nearly equal distances may come
-    /// in another order than by single calls. If `parallelFor` uses several threads, callbacks run at the same time,
-    /// and must not change the broadphase or shared data. Cost: as single calls, or less.
+    /// rayTests() does rayTest() for each ray and its callback; closestRays() does closestRay(). Hits at nearly equal
+    /// distances may come in another order than by single calls. If `parallelFor` uses several threads, callbacks run
+    /// at the same time, and must not change the broadphase or shared data. Cost: as single calls, or less.
     void rayTests(std::span<const BroadphaseRay> rays, ParallelFor parallelFor = serialFor);
     void closestRays(std::span<const ClosestRay> rays, ParallelFor parallelFor = serialFor) const;
 
     /// Asks the filter again about every proxy that `proxy` overlaps, or met on its path in the last calculation.
-    /// Adds and removes pairs at once. Call it after a change of the proxy's group or mask, or of the filter.
-    /// Persisting pairs keep their contacts; after a change of shape, call shapeChanged(). Cost: as
-    /// Pairs::refilter(), plus O(1) for each pair of the proxy.
+    /// Immediately adds accepted pairs and removes refused pairs. Call it after a change of the proxy's group or
+    /// mask, or of the filter's decisions about this proxy. Persisting pairs keep their contacts; after a change of
+    /// shape, call shapeChanged(). Cost: as Pairs::refilter(), plus O(1) for each pair of the proxy.
     void refilter(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// As above for many proxies, but asks the filter only once about every pair. Cost: as Pairs::refilter() for many
@@ -205,22 +205,21 @@ public:
 
     /// Grows the proxy's box by `margin` [m] on all sides. A sweeping proxy keeps this margin on its whole path.
     /// Two proxies are a pair if their grown boxes overlap. Queries test the grown box, too. getAabb(), m_aabbMin and
-    /// m_aabbMax do not include the margin. Queries see the margin at once; pairs change as after setAabb(). A new
-    /// proxy has no margin; refreshBroadphaseProxy() makes a new proxy. If only margins overlap, Bullet treats the
-    /// pair like any other: two dynamic bodies fall asleep only at the same time, and the narrow phase runs while one
-    /// of them is awake. Asserted: `margin` is finite and not negative; if it is not, nothing changes. Cost: as
-    /// setAabb().
+    /// m_aabbMax do not include the margin. Queries see the margin immediately; pairs change as after setAabb(). A
+    /// new proxy has no margin; refreshBroadphaseProxy() makes a new proxy. If only margins overlap, Bullet treats
+    /// the pair like any other: two dynamic bodies fall asleep only at the same time, and the narrow phase runs while
+    /// one is awake. Asserted: `margin` is finite and not negative; if not, nothing changes. Cost: as setAabb().
     void setMargin(btBroadphaseProxy* proxy, btScalar margin, btDispatcher* dispatcher);
     [[nodiscard]] btScalar margin(const btBroadphaseProxy* proxy) const;
 
     /// From now on, the two proxies do not pair, whatever groups, masks and the filter decide (see Pairs::ignore()).
-    /// An existing pair is removed at once. Its algorithm and contacts are freed at once; with PairOrder::canonical,
-    /// later (see Removal in pair_cache.hpp). The pair stays ignored until stopIgnoringPair(), until
+    /// An existing pair is removed immediately. Its algorithm and contacts are freed immediately, too, except with
+    /// PairOrder::canonical (see Removal in pair_cache.hpp). The pair stays ignored until stopIgnoringPair(), until
     /// collisionChecksChanged() for one of the proxies (see there), or until one of them is destroyed, also by
-    /// refreshBroadphaseProxy(). Asserted: the proxies differ. Cost: O(1), plus removing a pair from the cache; with
-    /// deferred removal, a pass over all pairs.
+    /// refreshBroadphaseProxy(). Asserted: the proxies differ. Cost: O(1), plus removing a pair from the cache; if
+    /// the cache defers removal, a pass over all pairs.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
-    /// Ends ignorePair(). If the proxies overlap and the filter accepts them, adds their pair at once. Cost: as
+    /// Ends ignorePair(). If the proxies overlap and the filter accepts them, adds their pair immediately. Cost: as
     /// ignorePair().
     void stopIgnoringPair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     [[nodiscard]] bool isIgnoredPair(const btBroadphaseProxy* a, const btBroadphaseProxy* b) const;
@@ -236,12 +235,12 @@ public:
     void collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,
                                 btDispatcher* dispatcher);
 
-    /// Frees the algorithms and contacts of the proxy's pairs, also in the pair caches of ghost objects. The pairs
-    /// stay. After a change of shape, scale, collision margin or other contact data, call this function and
+    /// Frees the algorithms and contacts of the proxy's pairs, also in ghost objects' pair caches. The pairs stay.
+    /// After a change of shape, scale, collision margin or other contact data, call this function and
     /// btCollisionWorld::updateSingleAabb() before the next step. If the cache has no deferred removal, calls the
-    /// ghost callback as if each pair was removed and added again. If the callback itself removes a pair, it is
-    /// called again for this removal. Cost: as PairCache::renewPairsContainingProxy(); with another cache, a pass
-    /// over all pairs.
+    /// ghost callback as if each pair was removed and added again; a cache not passed as a PairCache loses pairs that
+    /// its filter now refuses. If the callback itself removes a pair, it is called again for this removal. Cost: as
+    /// PairCache::renewPairsContainingProxy(); with another cache, a pass over all pairs.
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// Subtracts `shift` from every box: see Grid::shiftOrigin(). Pairs do not change. If rounding makes boxes
@@ -276,8 +275,9 @@ public:
     /// O(grid().indexLimit()), plus a copy of the remaining data.
     void releaseUnusedMemory() noexcept;
 
-    /// Returns a sentence about a broken invariant of the grid, sweeps, pairs or own PairCache (as many pairs as the
-    /// broadphase, unless the program has removed pairs). Empty if all hold. Call it after calculateOverlappingPairs().
+    /// Returns a sentence about a broken invariant of the grid, sweeps, pairs, or a PairCache that the broadphase
+    /// created; empty if all hold. Unless the program has removed pairs from this cache, it must have as many pairs
+    /// as the broadphase. Call it after calculateOverlappingPairs().
     [[nodiscard]] std::string validate() const;
 
 private:

@@ -24,15 +24,15 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 struct SpatialHashConfig {
     GridConfig grid{};
 
-    /// createProxy() and setAabb() of a ghost object add its pairs at once, as Bullet's character controller expects.
-    /// With the broadphase's own cache or a cache passed as a PairCache*, this needs an internal ghost pair callback.
-    /// With a cache passed as a btOverlappingPairCache*, it does not. An object also pairs with a ghost at once if it
-    /// is created in the ghost's box, or moves there so far that its new box does not touch its previous box. If
-    /// a call passes a dispatcher, as btCollisionWorld does, each proxy's client is cast to btCollisionObject, unless
-    /// the group or mask is 0. Set false if clients have other types.
+    /// createProxy() and setAabb() of a ghost object add its pairs immediately, as Bullet's character controller
+    /// expects. This needs an internal ghost pair callback, unless the cache was passed as a btOverlappingPairCache*.
+    /// An object also pairs with a ghost immediately if the object is created in the ghost's box, or moves there so
+    /// far that the object's new box does not touch its previous box. If a call for a proxy passes a dispatcher, as
+    /// btCollisionWorld does, the client of this proxy is cast to btCollisionObject, unless the proxy's group or mask
+    /// is 0. Set false if clients have other types.
     bool eagerGhosts = true;
 
-    /// createProxy() and setAabb() of a proxy in these groups add its pairs at once, too. For code without ghost
+    /// createProxy() and setAabb() of a proxy in these groups add its pairs immediately, too. For code without ghost
     /// objects that reads pairs between a move and the next step. No groups by default, because your program defines
     /// what a bit means.
     int eagerGroups = 0;
@@ -46,19 +46,21 @@ struct SpatialHashConfig {
     /// this box makes no pairs if the body is fast. Instead, the body gets pairs with exactly those objects that it
     /// touches along the path that Bullet predicts. Queries test Bullet's box of the body, extended to the end of the
     /// path if m_useContinuous is off. setAabb() sets the path, from the body's world transform to its interpolation
-    /// transform, until the next setAabb(). If you move a body by hand, set both transforms. Cost: up to two
-    /// getAabb() calls for each moving body's shape.
+    /// transform, until the next setAabb(). If you move a body by hand, set both transforms. Cost: setAabb() of a
+    /// moving body calls getAabb() of the body's shape up to twice.
     Sweep sweep = Sweep::none;
 
-    /// A body is fast if it moves in a step by more than `fastFrom` times the smallest edge of its shape's box at the
-    /// start of the step, grown by gContactBreakingThreshold. Other bodies do not sweep. Valid: 0 or more.
+    /// A body is fast if it moves in a step by more than `fastFrom` times the smallest edge of its shape's box. This
+    /// box is taken at the start of the step, and grown by gContactBreakingThreshold on every side. Other bodies do
+    /// not sweep. Valid: 0 or more.
     btScalar fastFrom = 1;
 
     /// Set this to true if your overlap filter callback, or your pair cache other than PairCache, refuses at least
-    /// the pairs that groups and masks refuse. Bullet's own caches do. If true, the callback or cache is asked only
-    /// about pairs that groups and masks accept. Other pairs, such as all pairs of a proxy with a mask of 0, are not
-    /// stored. If false, the callback or cache decides instead of groups and masks. It is asked about every pair of
-    /// overlapping proxies, and again about a refused pair when the box of one of its proxies changes.
+    /// the pairs that groups and masks refuse. Bullet's own caches without a callback do. If true, the callback or
+    /// cache is asked only about pairs that groups and masks accept. Other pairs, such as all pairs of a proxy with a
+    /// mask of 0, are not stored. If false, the callback or cache decides instead of groups and masks. It is asked
+    /// about every pair of overlapping proxies, and again about a refused pair when the box of one of its proxies
+    /// changes.
     bool filterRefusesMore = false;
 
     /// If true, a query ends when process() of its callback returns false. Off by default: Bullet's broadphases

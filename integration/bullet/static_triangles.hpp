@@ -27,8 +27,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// Shapes: btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, btHeightfieldTerrainShape, any other btConcaveShape
 /// whose processAllTriangles() reports triangles (except btStaticPlaneShape), and compounds of these shapes.
 /// Returns an empty string, or a sentence about the fault. If there is a fault, appends nothing. Faults: a plane, a
-/// shape or child without triangles (a convex shape, a heightfield with a negative scaling), compounds nested more
-/// than 64 deep, or a compound that contains itself.
+/// shape or child without triangles (a convex shape, a heightfield with a negative scaling; but not a compound
+/// without children), compounds nested more than 64 deep, or a compound that contains itself.
 /// Cost: O(triangles + children of compounds). If a shape occurs several times, each occurrence counts.
 [[nodiscard]] HASHPHASE_BULLET_EXPORT std::string appendTriangles(
     const btCollisionShape& shape, const btTransform& transform,

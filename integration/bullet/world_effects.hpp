@@ -29,11 +29,13 @@
 // less without restingBoxes.
 //
 // A frame   Between two steps, call apply() if declarations change, prepare() after adding a body, and release()
-//           before removing a body. Afterwards, call step(), or stepSimulation(), optionally after beforeStep().
+//           before removing a body. Afterwards, call step() alone. Or call stepSimulation(), and optionally
+//           beforeStep() before it.
 // Settings  When an effect is declared again, apply() restores the former settings of bodies and the world; the
-//           destructor restores all. If your program sets a value while the effect is off, that value is restored
-//           instead. Exception: DISABLE_DEACTIVATION that your program sets while sleeping is off is removed.
-//           Angular velocities are not restored.
+//           destructor restores all. If your program sets another value while the effect is off, that value is
+//           restored instead. A value equal to the configurator's (friction 0 while friction is off,
+//           DISABLE_DEACTIVATION while sleeping is off) is not noticed, and not restored. Angular velocities are not
+//           restored.
 // Lifetime  The world, its broadphase, its pair cache and its former overlap filter must outlive the configurator. No
 //           other filter may call the configurator's filter. The configurator changes only objects in the world.
 // Removal   Call release() before you remove or delete an object. Without this call, a removed object keeps the
@@ -76,7 +78,7 @@ struct BodyEffects {
 /// The declared effects of a world.
 struct WorldEffects {
     bool motion = true;        ///< if false, WorldConfigurator::step() moves no body
-    bool restingBoxes = true;  ///< each step updates boxes of resting bodies, as in Bullet
+    bool restingBoxes = true;  ///< each step updates the boxes of all objects, as in Bullet
     bool pairs = true;
     bool response = true;
     bool sweep = true;
@@ -114,8 +116,8 @@ public:
     WorldConfigurator& operator=(const WorldConfigurator&) = delete;
 
     /// Sets what Bullet computes from the next step on. If this changes how bodies move, all bodies wake. Pairs
-    /// change at once. If pairs may change under a broadphase other than SpatialHashBroadphase, each object gets a
-    /// new proxy. Cost: one pass over all objects, plus one over contacts and pairs if these may change.
+    /// change immediately. If pairs may change under a broadphase other than SpatialHashBroadphase, each object gets
+    /// a new proxy. Cost: one pass over all objects, plus one over contacts and pairs if these may change.
     void apply(const WorldEffects& effects);
     [[nodiscard]] const WorldEffects& effects() const noexcept { return effects_; }
 
@@ -127,10 +129,10 @@ public:
     void release(btCollisionObject& object);
 
     /// Returns the number of bodies that Bullet will sweep in a step of `timeStep` [s]. If fastFrom is set and the
-    /// number is 0, switches Bullet's sweeps off for this step. A body that becomes fast during the step is swept
-    /// from the next step on. This call is optional: without it, sweeps are not switched off. If you use it, call it
-    /// before each step, because sweeps that it switched off stay off until the next call. Cost: one pass over all
-    /// objects.
+    /// number is 0, switches Bullet's sweeps off for this step: a body that becomes fast during such a step is swept
+    /// only from the next step on. This call is optional: without it, sweeps are not switched off. If you use it,
+    /// call it before each step, because sweeps that it switched off stay off until the next call. Cost: one pass
+    /// over all objects.
     int beforeStep(btScalar timeStep);
 
     /// Runs a step of `timeStep` [s]. If motion is declared, calls beforeStep() (only if fastFrom is set), then

@@ -44,9 +44,10 @@
 // Calls     Call save() and restore() between steps. Within callbacks of the broadphase or its cache, they return a
 //           fault. Never call them in tick callbacks or motion states: such calls are not detected, and forces of the
 //           step count twice.
-// Memory    A second save() allocates no memory, unless the world has grown. Throws std::bad_alloc when memory runs
-//           out. In that case, save() leaves the snapshot empty, and restore() changes nothing.
-// Threads   During a call, no other thread may use the world or this object.
+// Memory    Another save() into the same snapshot allocates no memory, unless the world has grown. Throws
+//           std::bad_alloc when memory runs out. In that case, save() leaves the snapshot empty, and restore()
+//           changes nothing.
+// Threads   During a call, no other thread may use the world or the snapshot.
 
 #include <integration/bullet/export.hpp>
 #include <integration/bullet/precision.hpp>
@@ -93,6 +94,7 @@ public:
 
     /// Replaces the content of `bytes` by the snapshot, a version and a checksum, to send or to keep. Returns an
     /// empty string, or a sentence about the fault. After a fault, `bytes` is empty. Faults:
+    /// - The snapshot is empty.
     /// - An ignored object, a joint of a body, a body of a joint, the ghost of a character, or the object of a proxy
     ///   is not in the world.
     /// - Algorithms of removed pairs are not freed yet. In that case, save again after the next step.
@@ -108,10 +110,10 @@ public:
     /// Reads bytes that write() made of a world with the same objects, such as a world built by the same calls. Finds
     /// objects by unique ids of proxies, joints by type and bodies, characters by ghosts. If some are not in this
     /// world, pass them as `returned`: objects and joints in the order of the writer's world at save(), characters in
-    /// any order. If objects are missing, the fault lists their unique ids in this order. Objects keep their present
-    /// shapes. A compound shape and its child compounds must have the same getUpdateRevision() as in the writer at
-    /// save(). If another object has a saved id by chance, read() takes this wrong object, unless its type or the
-    /// getUpdateRevision() of its compound shape differs.
+    /// any order. If objects are missing and you pass none, the fault lists their unique ids in this order. Objects
+    /// keep their present shapes. A compound shape and its child compounds must have the same getUpdateRevision() as
+    /// in the writer at save(). If another object has a saved id by chance, read() takes this wrong object, unless
+    /// its type or the getUpdateRevision() of its compound shape differs.
     /// Returns an empty string, or a sentence about the fault. After a fault, nothing has changed. After success,
     /// call restore() with the same `returned`. With equal inputs, later steps give the same bits as the writer's
     /// steps. Damaged bytes are refused. Forged bytes may put objects anywhere, but do no other harm: authenticate

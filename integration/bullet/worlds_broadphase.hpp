@@ -56,7 +56,8 @@ struct WorldsConfig {
     /// Before these calls, set the value that worldOf reads: the user index of a new object is -1, an invalid number.
     std::function<int(const btCollisionObject& object)> worldOf{};
 
-    /// Settings of each world. each.parallelFor updates several worlds at the same time, each on one thread.
+    /// The settings that every world gets. each.parallelFor updates several worlds at the same time, every world on
+    /// one thread.
     SpatialHashConfig each{};
 };
 
@@ -99,9 +100,9 @@ public:
     // --- btBroadphaseInterface -------------------------------------------------------------------
 
     /// As SpatialHashBroadphase::createProxy(), in the world that WorldsConfig::worldOf returns for `userPtr`, a
-    /// btCollisionObject. If `userPtr` is NULL or the number is invalid, throws std::invalid_argument and creates
-    /// nothing. After this exception, remove the object from Bullet's world. If refreshBroadphaseProxy() threw, first
-    /// call object.setBroadphaseHandle(nullptr), because the old proxy is destroyed.
+    /// btCollisionObject. If `userPtr` is NULL or worldOf returns an invalid number, throws std::invalid_argument and
+    /// creates nothing. After this exception, remove the object from Bullet's world. If refreshBroadphaseProxy()
+    /// threw, first call object.setBroadphaseHandle(nullptr), because the old proxy is destroyed.
     btBroadphaseProxy* createProxy(const btVector3& aabbMin, const btVector3& aabbMax,
                                    int shapeType, void* userPtr, int collisionFilterGroup,
                                    int collisionFilterMask, btDispatcher* dispatcher) override;
@@ -121,10 +122,10 @@ public:
                   btBroadphaseAabbCallback& callback) override;
 
     /// Makes the cache's pairs exact, as SpatialHashBroadphase::calculateOverlappingPairs() for each world. First
-    /// removes separated pairs of all worlds, then adds new pairs, world by world. If parallelFor is set and there is
-    /// no overlap filter callback, updates several worlds at the same time. The result does not depend on the number
-    /// of threads. Cost: an update of each changed world, plus one check for each unchanged world. An unchanged world
-    /// keeps its lastCost(), and its unused memory until releaseUnusedMemory().
+    /// removes separated pairs of all worlds. Afterwards, adds new pairs world by world. If parallelFor is set and
+    /// there is no overlap filter callback, updates several worlds at the same time. The result does not depend on
+    /// the number of threads. Cost: an update of each changed world, plus one check for each unchanged world. An
+    /// unchanged world keeps its lastCost(), and its unused memory until releaseUnusedMemory().
     void calculateOverlappingPairs(btDispatcher* dispatcher) override;
 
     btOverlappingPairCache* getOverlappingPairCache() override { return pairCache_; }

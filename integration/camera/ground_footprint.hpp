@@ -9,9 +9,10 @@
 // Horizon    Perspective views end at the far plane or `farthest` beyond the near plane, whichever is nearer.
 //            Orthographic views always end at the far plane.
 // Units      metres
-// Bad data   The footprint is empty if the matrix is singular, a height is NaN, `low` is above `high`, or `farthest`
-//            is not positive or not finite. footprintError() returns the reason. If there is no error, an empty
-//            footprint means that the camera sees no ground.
+// Bad data   The footprint is empty if the matrix or the rectangle is bad (frustum.hpp), the matrix is singular, a
+//            height is NaN, `low` is above `high`, both heights are the same infinity, or `farthest` is not positive
+//            or not finite. footprintError() returns the reason. If there is no error, an empty footprint means that
+//            the camera sees no ground.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -44,7 +45,8 @@ public:
     /// A point of the map [m]: (y, z) if x is up, (x, z) if y is up, (x, y) if z is up.
     using Point = detail::Vector2<Scalar>;
 
-    /// Maximum number of corners: a polyhedron with nine faces has at most 14.
+    /// Maximum number of corners: the view's six planes, two heights and `farthest` enclose a polyhedron that has at
+    /// most 14.
     static constexpr std::size_t kMostCorners = 14;
 
     /// Takes a 4 x 4 matrix (frustum.hpp), the heights, and a rectangle of the screen. A perspective view ends at
@@ -59,8 +61,8 @@ public:
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
-    /// The polygon's corners, in the direction of rotation from the first axis to the second. If the area is zero,
-    /// there are one or two corners.
+    /// The polygon's corners, in the direction of rotation from the first axis of Point to the second. A point has
+    /// one corner, a line has two, an empty polygon has none.
     [[nodiscard]] std::span<const Point> corners() const noexcept {
         return {corners_.begin(), corners_.end()};
     }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Sends bytes that a rank computes for ghosts, such as contact forces, to the ranks that own the objects.
+// Packs bytes that a rank (process) computes for ghosts (copies of other ranks' objects), such as contact forces, for
+// the ranks that own these objects.
 //
 // Transport  Your program sends the parcels, as for RankGrid.
-// Frame      All ranks call pack() and finish(), after RankGrid::finish() and before objects move.
+// Frame      All ranks call pack() and finish(), after RankGrid::finish() and before the next change of a RankGrid.
 // Result     Deterministic: equal calls give equal results.
 // Failure    finish() throws RankError if a parcel is invalid.
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Ids of objects that are valid on all ranks. A ProxyId is valid only in one grid.
+// Object ids that are valid on all ranks (processes). A ProxyId is valid only in one grid.
 
 #include <broadphase/export.hpp>
 

@@ -71,8 +71,8 @@ public:
     explicit Partition(std::span<const Cut<Scalar>> cuts);
 
     /// Cuts space so that each rank gets about the same weight. Each cut is perpendicular to the axis along which
-    /// points are spread most, at the coordinate that divides the weight best. Ignores points with a NaN. If `last`
-    /// has the same number of ranks, cuts keep the axes of `last`, unless the spread along another axis is clearly
+    /// points are spread most, at the coordinate that divides the weight best. Ignores points with a NaN. If
+    /// last->rankCount() is `ranks`, cuts keep the axes of `last`, unless the spread along another axis is clearly
     /// larger. So fewer objects change ranks. Equal points in equal order give equal results. Asserted: `ranks` is 1
     /// or more. Cost: O(points * log(points) * log(ranks)).
     [[nodiscard]] static Partition balanced(std::uint32_t ranks,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Queries to all ranks: find objects that touch a box, are within a distance, or are hit by a ray, on any rank.
+// Queries to all ranks: find objects that touch a box, are within a distance of a point, or are hit by a ray, on any
+// rank.
 //
 //     for (const Parcel& parcel : asked.pack(grid, questions)) { send(parcel.rank, parcel.bytes); }
 //     for (const Parcel& parcel : asked.answer(grid, received)) { send(parcel.rank, parcel.bytes); }
@@ -35,7 +36,7 @@ struct Question {
     Vector3<Scalar> from = Vector3<Scalar>::Zero();  ///< start of a ray, centre of a sphere [m]
     Vector3<Scalar> to = Vector3<Scalar>::Zero();    ///< end of a ray [m]
     Scalar radius = 0;                               ///< of a sphere [m]
-    /// Maximum number of objects. The smallest keys win, then the smallest ids.
+    /// Maximum number of objects. The smallest keys win; among equal keys, the smallest ids.
     std::uint32_t most = ~std::uint32_t{0};
 
     /// Finds the objects that touch a box (BoxRegion).
@@ -56,7 +57,8 @@ struct Question {
         question.most = most;
         return question;
     }
-    /// Finds the objects that a ray hits (RayRegion). If `most` is 1, finds the first box that the ray enters.
+    /// Finds the objects that a ray hits (RayRegion describes `fatness`). If `most` is 1, finds the first box that
+    /// the ray enters.
     [[nodiscard]] static Question ray(const Vector3<Scalar>& from, const Vector3<Scalar>& to,
                                       std::uint32_t most = ~std::uint32_t{0},
                                       const Aabb<Scalar>& fatness = {Vector3<Scalar>::Zero(),
@@ -100,8 +102,8 @@ template <class Scalar>
 class HASHPHASE_DISTRIBUTED_TEMPLATE_EXPORT RankQuestions {
 public:
     /// Returns parcels of questions for other ranks, valid until the next pack() or answer(). Also queries this
-    /// rank's grid. Throws std::length_error beyond 2^32 - 1 questions. Cost: O(log ranks) for each rank that gets a
-    /// question, plus the queries on this rank.
+    /// rank's grid. Throws std::length_error beyond 2^32 - 1 questions. Cost: O(log ranks) for each question and each
+    /// rank that gets it, plus the queries on this rank.
     std::span<const Parcel> pack(const RankGrid<Scalar>& grid,
                                  std::span<const Question<Scalar>> questions);
 

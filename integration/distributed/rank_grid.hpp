@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// One rank's part of a grid over many ranks: objects, pairs, and ghosts. Ghosts are copies of other ranks' objects.
+// One rank's part of a grid over many ranks (processes): objects, pairs, and ghosts. Ghosts are copies of other
+// ranks' objects.
 //
 //     for (const Parcel& parcel : grid.pack()) { send(parcel.rank, parcel.bytes); }
 //     const RankChanges changes = grid.finish(received);
@@ -9,13 +10,13 @@
 // Transport  Your program sends the parcels between ranks. hashphase::mpi does this with MPI.
 // Objects    An object has one GlobalId on all ranks, and a ProxyId on this rank. Its home is the rank whose region
 //            contains its min corner. finish() moves each object to its home, which then owns the object. The payload
-//            (bytes of your program) moves with the object.
-// Ghosts     If an object's box touches another rank's region, that rank has a ghost: box, groups and payload. pack()
-//            sends only changes.
+//            (bytes that your program stores) moves with the object.
+// Ghosts     If an object's box touches another rank's region, that rank has a ghost: box, groups and payload.
+//            Parcels contain only changes.
 // Pairs      All ranks together report the same births and deaths as one large grid. Exactly one rank reports each of
 //            them. If a pair moves to another rank, no rank reports a birth or death.
-// Frame      Changes are visible on this rank at once, and on other ranks after finish(). To query other ranks, use
-//            questions.hpp before the next change.
+// Frame      Changes are visible on this rank immediately, and on other ranks after finish(). To query other ranks,
+//            use questions.hpp before the next change.
 // Result     Deterministic: equal calls give equal results. finish() sorts parcels by sender.
 // Failure    If memory runs out in add(), move(), remove() or payload(), nothing changes. If a parcel is invalid,
 //            finish() throws RankError, which names the sender. After a RankError, or if memory runs out in pack() or
@@ -132,8 +133,8 @@ public:
     void remove(ProxyId id);
 
     /// Returns the payload of an object that this rank owns, for writing. The span is valid until the next add() or
-    /// finish(). pack() sends the bytes to ghosts and to a new home. Call payload() again in each frame in which you
-    /// write. Otherwise, pack() might not send the bytes. Cost: O(1).
+    /// finish(). pack() packs the bytes for ghosts and for a new home. Call payload() again in each frame in which
+    /// you write. Otherwise, pack() might leave out the bytes. Cost: O(1).
     [[nodiscard]] std::span<std::byte> payload(ProxyId id);
 
     /// Returns the payload of an object or ghost, for reading. finish() updates the payloads of ghosts. Returns an
@@ -145,11 +146,12 @@ public:
         return grid_.contains(id) && (marks_[id.index] & kOwned) != 0;
     }
 
-    /// Returns the rank that owns the object (for a ghost: its object). Asserted: the id is valid in this grid.
+    /// Returns the rank that owns the object, or the ghost's object. Asserted: the id is valid in this grid.
     [[nodiscard]] std::uint32_t homeOf(ProxyId id) const;
 
-    /// Returns the GlobalId of an object or ghost. Until the next finish(), also accepts proxies that the last frame
-    /// removed. Asserted: the proxy is one of these. Without assertions, returns id 0 for other proxies.
+    /// Returns the GlobalId of an object or ghost. Until the next finish(), also accepts proxies that were removed in
+    /// the frame that the last finish() ended. Asserted: the proxy is an object, a ghost or such a removed proxy.
+    /// Without assertions, returns id 0 for other proxies.
     [[nodiscard]] GlobalId globalId(ProxyId id) const;
 
     /// Returns the GlobalIds of a pair.
@@ -187,7 +189,7 @@ public:
     void setPartition(const Partition<Scalar>& partition);
 
     /// Ends the changes of this frame. Returns the parcels for other ranks, sorted by receiver, valid until the next
-    /// pack(). Cost: O(n) for n objects that were added, removed, or changed at the region's border.
+    /// pack(). Cost: O(n) for n objects that were added or removed, or that changed at the region's border.
     std::span<const Parcel> pack();
 
     /// Ends the frame. Pass all parcels from other ranks for this frame, in any order. Throws RankError. Cost: as

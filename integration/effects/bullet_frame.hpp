@@ -7,20 +7,21 @@
 //     configurator.apply(hashphase::worldEffectsOf(scene));
 //     configurator.step(timeStep);                           // or world.stepSimulation()
 //
-//     effect       setting in Bullet                      lost without the effect
-//     motion       none: step() moves bodies              motion: step() only finds pairs, if pairs is declared.
-//                                                         After you move bodies, call updateAabbs().
-//                                                         stepSimulation() would move bodies that have a velocity
-//     terrain      none: the ground is your static body   the ground: do not add its body
+//     effect       setting in Bullet                      consequence without the effect
+//     motion       none: step() moves bodies              step() moves no body: it updates boxes, pairs and contacts.
+//                                                         Without pairs too, step() does nothing: call updateAabbs()
+//                                                         after you move bodies. Do not call stepSimulation(): it
+//                                                         moves bodies
+//     terrain      none: the ground is your static body   no ground: do not add its body
 //                  (static_triangles.hpp)
-//     pairs        the world's overlap filter             contacts, ghosts' lists, response and sweep
+//     pairs        the world's overlap filter             no contacts, ghost objects' lists, response or sweep
 //     response     CF_NO_CONTACT_RESPONSE of objects      bodies pass through each other; contacts are reported
 //     sweep        m_useContinuous; CCD thresholds of     bodies that move by more than half their width in a step
 //                  bodies that are fast for their size    may pass through thin bodies
-//     sleeping     deactivation, linear thresholds        nothing, but Bullet also computes resting bodies
+//     sleeping     deactivation, linear thresholds        Bullet also computes resting bodies
 //     rotation     angular factors                        bodies keep their orientation
 //     friction     all frictions                          bodies slide for ever
-//     all others   none: Observers query                  nothing
+//     all others   none: Observers query                  no change in Bullet
 //                  SpatialHashBroadphase::grid()
 //
 // Observers  Observers (observers.hpp) identify objects by ProxyId, and index data by ProxyId::index. When you remove
@@ -29,8 +30,8 @@
 // Ignored    ResponseEffect::restitution: each body has its own restitution (WorldEffects::restitution sets all).
 //            SweepEffect::mode: set SpatialHashConfig::sweep instead. SleepingEffect::framesBeforeSleep: bodies fall
 //            asleep after gDeactivationTime, 2 s.
-// Errors     A finite motion.bounds or sleeping.interestRadius is an error. Instead, put static planes at the bounds,
-//            and deactivate far bodies.
+// Errors     A finite face of motion.bounds, or a finite sleeping.interestRadius, is an error. Instead, put static
+//            planes at the bounds, and deactivate far bodies.
 
 #include <broadphase/core/raise.hpp>
 #include <integration/bullet/world_effects.hpp>

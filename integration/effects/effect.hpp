@@ -25,7 +25,7 @@ enum class Effect : std::uint8_t {
     picking,       ///< finds bodies under the pointer
     boxSelection,  ///< finds bodies in a dragged rectangle
     culling,       ///< finds bodies that a camera sees
-    proximity,     ///< agents (proxies) take the rarest colour around them
+    proximity,     ///< agents (proxies) take the colour (a number) that is rarest around them
     zones,         ///< finds proxies in zones
     radar,         ///< counts proxies in coarse cells
 };

@@ -6,7 +6,8 @@
 //
 // Undeclared  An undeclared effect has no phase, no table and no cost. A call that needs an undeclared effect throws
 //             UndeclaredEffect.
-// Frame       Set the view, interest or zones if they changed, then call observe() once.
+// Frame       In each frame, set the view, the interest (the player's position) and the zones if they changed.
+//             After that, call observe() once.
 // Exact       An effect's results depend only on the scenes that you pass, and on the effect's settings, view,
 //             interest, zones or colours. Other declared effects do not change the results.
 // Late        An effect may be declared to run only in every n-th frame, for all objects or for far objects. In other
@@ -18,8 +19,8 @@
 // Failure     If observe() throws std::bad_alloc, the visible set may be incomplete, colours may be old, and
 //             radarCounts() may be empty. zoneEvents() has all events or none. The next frames work, and report
 //             missed events.
-// Misuse      Asserted: callbacks of observe() do not call declare() or observe(). Without assertions, such a call does
-//             nothing.
+// Misuse      Asserted: callbacks of observe() do not call declare() or observe(). Without assertions, such a call
+//             does nothing.
 
 #include <broadphase/convex_region.hpp>
 #include <broadphase/core/fixed_list.hpp>
@@ -98,8 +99,8 @@ public:
     /// Effect::culling.
     void setView(const ConvexRegion<Scalar>& view);
 
-    /// Sets the position of the player [m]. Effects may find far objects late, as declared. The radar is around the
-    /// player. If std::nullopt, nothing is far, and the radar is around the origin.
+    /// Sets the interest: the position of the player [m]. Effects may find far objects late, as declared. The radar
+    /// is around the player. If std::nullopt, nothing is far, and the radar is around the origin.
     void setInterest(const std::optional<Point>& interest) { interest_ = interest; }
     [[nodiscard]] const std::optional<Point>& interest() const noexcept { return interest_; }
 
@@ -111,7 +112,8 @@ public:
     void setColour(std::uint32_t index, std::uint32_t colour);
 
     /// Runs one frame. `moved` [m] is the largest distance that a corner of a box may have moved since the last frame
-    /// (see Culler::look()). Pass infinity if the distance is unknown, or a proxy was added. Returns the cost.
+    /// (see Culler::look()). Pass infinity if the distance is unknown, a proxy was added, or ObservedScene::effects
+    /// changed. Returns the cost.
     const SceneCost& observe(const Scene& scene,
                              Scalar moved = std::numeric_limits<Scalar>::infinity(),
                              ParallelFor parallelFor = serialFor);
@@ -124,8 +126,9 @@ public:
     /// that they left.
     void forgetProxies() noexcept;
 
-    /// Calls `watch` with the effect's name after each phase, for a profiler. To stop the calls, pass an empty
-    /// function. `watch` may call watchPhases(): the new function is called from the next phase on.
+    /// Calls `watch` after each phase of observe(), with the name of the phase's effect, for a profiler. To stop the
+    /// calls, pass an empty function. `watch` may call watchPhases(): the new function is called from the next phase
+    /// on.
     void watchPhases(std::function<void(std::string_view)> watch) { watch_.set(std::move(watch)); }
 
     // --- Results of the last frame ---------------------------------------------------------------

@@ -26,7 +26,7 @@ inline constexpr EffectSet kGridEffects{
     Effect::proximity, Effect::zones,   Effect::radar,
 };
 
-/// The work of a frame. sceneCounters() returns the effects to which a counter belongs.
+/// The work of a frame. sceneCounters() lists all counters, each with the effects to which it belongs.
 enum class SceneCounter : std::uint8_t {
     // Bodies.
     bodiesMoved,      ///< bodies that moved by their velocities
@@ -55,12 +55,12 @@ enum class SceneCounter : std::uint8_t {
     selections,            ///< drag rectangles
     selectionBoxesTested,  ///< boxes tested for drag rectangles
     // Culling.
-    viewsFound,          ///< 1 if the visible set was searched, 0 if it was kept
+    viewsFound,          ///< 1 if culling searched the grid, 0 if the visible set was kept
     cellRowsCulled,      ///< rows of cells read by culling
     cullingBoxesTested,  ///< boxes tested against the view
     framesCulledLate,    ///< 1 if restingCameraFrames skipped the search, so the set is old
     // Proximity.
-    agentsScanned,     ///< agents that searched or, if turns is 1, may be near such agents
+    agentsScanned,     ///< agents that searched; if turns is 1, also late agents that may be near them
     neighboursTested,  ///< tested distances between agents
     agentsLate,        ///< agents that did not search: far, or not their turn
     // Zones.
@@ -73,7 +73,7 @@ enum class SceneCounter : std::uint8_t {
     radarsLate,        ///< 1 if the counts are from an earlier frame
 };
 
-/// Tables that hold a scene's data. sceneTables() returns the effects to which a table belongs.
+/// Tables that hold a scene's data. sceneTables() lists all tables, each with the effects to which it belongs.
 enum class SceneTable : std::uint8_t {
     bodies,      ///< positions, radii, and the effects that each body takes part in
     velocities,  ///< velocities of all bodies

@@ -6,8 +6,8 @@
 //
 // Frame   A declaration is a value: copy it, change it, and declare it again between two frames.
 // Units   metres, seconds
-// Limits  Settings that count frames are from 1 to kMostEffectFrames. If farFrames is above 1, interestRadius must be
-//         finite.
+// Limits  Settings that count frames or turns are from 1 to kMostEffectFrames. If farFrames is above 1,
+//         interestRadius must be finite.
 
 #include <broadphase/aabb.hpp>
 #include <broadphase/grid_config.hpp>
@@ -23,7 +23,7 @@
 
 namespace hashphase {
 
-/// The largest value of settings that count frames.
+/// The largest value of settings that count frames or turns.
 inline constexpr std::uint32_t kMostEffectFrames = 1'000'000;
 
 /// The largest and smallest valid length [m], in settings that mention these limits.
@@ -38,8 +38,9 @@ struct MotionEffect {
                         Vector3<double>::Constant(std::numeric_limits<double>::infinity())};
 };
 
-/// In each frame, puts every awake body on the ground below it, from any height. Bodies without ground below them are
-/// not changed. Needs motion.
+/// In each frame, puts every awake body on the ground below its centre, from any height. Ground above the centre
+/// counts too, up to the distance that the body moves in the frame: bodies climb slopes up to 45 degrees. Bodies
+/// without such ground are not changed. Needs motion.
 struct TerrainEffect {
     UpAxis up =
         UpAxis::y;  ///< declaring this effect with another axis removes all triangles of the ground
@@ -86,18 +87,18 @@ struct BoxSelectionEffect {};
 /// Finds the proxies that a camera sees (culling/culler.hpp).
 struct CullingEffect {
     /// Margin of the Culler [m]. A margin allows the Culler to keep the visible set for several frames.
-    double margin = 0;  ///< 0 to kMostEffectLength
-    /// While the camera does not move, the set is searched only in every n-th frame. In that case, proxies that move
-    /// into view are found up to n - 1 frames late (SceneCounter::framesCulledLate). Removed proxies leave the set at
-    /// once.
+    double margin = 0;  ///< from 0 to kMostEffectLength
+    /// While the camera does not move, culling searches the grid only in every n-th frame. In that case, proxies that
+    /// move into view are found up to n - 1 frames late (SceneCounter::framesCulledLate). Observers::forget() takes a
+    /// removed proxy out of the set immediately.
     std::uint32_t restingCameraFrames = 1;
 };
 
-/// Agents (proxies that take part) take the rarest colour around them (ai/rarest_colour.hpp).
+/// Agents (proxies that take part) take the colour (a number) that is rarest around them (ai/rarest_colour.hpp).
 struct ProximityEffect {
     double radius = 10;             ///< [m]
-    std::uint32_t colourCount = 4;  ///< 1 to RadiusSearch::kMostGroups
-    /// Agents farther than this from the point of interest are far [m].
+    std::uint32_t colourCount = 4;  ///< from 1 to RadiusSearch::kMostGroups
+    /// Agents farther than this from the interest (Observers::setInterest()) are far [m].
     double interestRadius = std::numeric_limits<double>::infinity();
     std::uint32_t farFrames = 1;  ///< far agents search only in every n-th frame
     /// Number n of turns: in each frame, one n-th of the agents search. If n is 1, neighbours change colour at the
@@ -108,7 +109,8 @@ struct ProximityEffect {
 
 /// Finds the proxies in zones that you add (ai/zones.hpp).
 struct ZonesEffect {
-    /// Zones farther than this from the point of interest are far [m].
+    /// Zones are far if they do not touch the cube around the interest (Observers::setInterest()) with this half edge
+    /// [m]. ConvexRegions with Containment::inside are never far.
     double interestRadius = std::numeric_limits<double>::infinity();
     std::uint32_t farFrames = 1;  ///< far zones are searched only in every n-th frame
 };
@@ -116,7 +118,7 @@ struct ZonesEffect {
 /// Counts the proxies of each group in coarse cells around the interest (ai/radar.hpp). Valid: columns * rows *
 /// groupCount from 1 to Radar::kMostCounts.
 struct RadarEffect {
-    double cellSize = 10;  ///< [m], kLeastEffectLength to kMostEffectLength
+    double cellSize = 10;  ///< [m], from kLeastEffectLength to kMostEffectLength
     std::uint32_t columns = 32;
     std::uint32_t rows = 32;
     std::uint32_t groupCount = 1;
@@ -141,7 +143,7 @@ struct HASHPHASE_EFFECTS_EXPORT SceneEffects {
     std::optional<ZonesEffect> zones;
     std::optional<RadarEffect> radar;
 
-    GridConfig grid;  ///< settings of the grid, which exists if an effect queries it
+    GridConfig grid;  ///< settings of a Simulation's grid, which exists if an effect queries it
 
     /// Returns the declared effects.
     [[nodiscard]] EffectSet set() const noexcept;

@@ -13,9 +13,10 @@
 // Exact       Only motion, terrain, response, sweep and sleeping decide the positions of bodies. Positions are equal
 //             to the last bit for any number of threads, and for any other declared effects.
 // Bodies      A body takes part in those effects of Body::effects that are declared. If it takes no part in motion,
-//             it stands still, and other bodies bounce off it. If it takes no part in response, it is a sensor.
-// Threads     Const members may run on several threads at once. During other calls, no other thread may use the
-//             simulation.
+//             it stands still, and other bodies bounce off it. If it takes no part in response, it is a sensor: its
+//             pairs are reported, but do not bounce.
+// Threads     Const members may run on several threads at the same time. During other calls, no other thread may use
+//             the simulation.
 // Failure     If memory runs out in advance(), some bodies may have moved. The next frame works, and reports all
 //             pairs as born. If add() or remove() fails, nothing has changed.
 // Units       metres, seconds
@@ -97,7 +98,8 @@ public:
 
     // --- Bodies ----------------------------------------------------------------------------------
 
-    /// Adds a sphere. Cost: O(1) amortised, and one pass over all bodies in the next frame.
+    /// Adds a sphere. Cost: O(1) amortised. After any number of calls, the next frame, pick() or select() makes one
+    /// pass over all bodies.
     BodyId add(const Body<Scalar>& body);
 
     /// Removes a body. Its id is never valid again. Cost: as add().
@@ -119,7 +121,8 @@ public:
     /// Returns whether the body takes part in motion and is asleep. Needs Effect::sleeping.
     [[nodiscard]] bool isAsleep(BodyId id) const;
 
-    /// Moves the body's centre to `position` [m] at once. The body wakes, and hits no bodies on its path.
+    /// Puts the body's centre at `position` [m] immediately. The body wakes, and hits no bodies between its old and
+    /// new positions.
     void setPosition(BodyId id, const Point& position);
 
     /// Returns the body of a proxy; null if the proxy belongs to no body of this simulation.
@@ -137,8 +140,8 @@ public:
     [[nodiscard]] Observers<Scalar>& observers() noexcept { return observers_; }
     [[nodiscard]] const Observers<Scalar>& observers() const noexcept { return observers_; }
 
-    /// The grid of all bodies, with their boxes in the last frame. Frames update boxes only while at least one body
-    /// takes part in one of kGridEffects. Needs one of kGridEffects.
+    /// The grid of all bodies. add(), remove() and setPosition() change the grid immediately. advance() updates boxes
+    /// only while at least one body takes part in one of kGridEffects. Needs one of kGridEffects.
     [[nodiscard]] const Grid<Scalar>& grid() const;
 
     // --- Frame -----------------------------------------------------------------------------------
@@ -158,11 +161,11 @@ public:
     void watchPhases(std::function<void(std::string_view)> watch);
 
     /// Lets two bodies bounce if they touch and approach each other. Use it for pairs from another broadphase.
-    /// Returns whether they bounced. Neither bounces if one takes no part in response. The order of `first` and
-    /// `second` does not matter. To replace the response effect, call collide() after advance() for all touching
-    /// pairs, sorted by the lower index of the two bodies, then by the higher index. Results are equal to the last
-    /// bit if no body sweeps or falls asleep. `restitution`: see ResponseEffect. Needs Effect::motion. Asserted: the
-    /// bodies differ. Cost: O(1).
+    /// Returns whether they bounced. They bounce only if effects() of both contain Effect::response, declared or not.
+    /// The order of `first` and `second` does not matter. To replace the response effect, call collide() after
+    /// advance() for all touching pairs, sorted by the lower index of the two bodies, then by the higher index.
+    /// Results are equal to the last bit if no body sweeps or falls asleep. `restitution`: see ResponseEffect. Needs
+    /// Effect::motion. Asserted: the bodies differ. Cost: O(1).
     bool collide(BodyId first, BodyId second, double restitution = 1);
 
     /// Births and deaths of pairs in the last frame. Valid until the next frame. Needs Effect::pairs.

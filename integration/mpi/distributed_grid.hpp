@@ -9,10 +9,11 @@
 // Balance   Each rank has a region of space. If one rank has too much work, update() cuts space into new regions.
 // Together  These calls are collective: constructor, update() (or begin() and end()), ask(), sendHome(), pairSum(),
 //           destructor. All ranks must make these calls in the same order. All other calls are local.
-// Failure   If one rank fails, collective calls on all ranks throw RankError, which names the rank and the reason: an
-//           exception destroyed the grid, no answer came within DistributedConfig::patience, a message is invalid, or
-//           configurations differ. After a RankError, the grid is unusable: call MPI_Abort(). Collective calls throw
-//           again. If a process dies, the MPI library ends the program.
+// Failure   If one rank fails, collective calls on all ranks throw RankError, which names the rank and the reason: a
+//           collective call threw an exception, an exception destroyed the grid, no answer came within
+//           DistributedConfig::patience, or a message is invalid. If configurations differ, RankError names the
+//           setting instead of a rank. After a RankError, the grid is unusable: call MPI_Abort(). Collective calls
+//           throw again. If a process dies, the MPI library ends the program.
 // Misuse    If ranks make collective calls in different orders, or call ask() or pairSum() after a change, all ranks
 //           throw RankError. Destroy the grid before MPI_Finalize(), and not between begin() and end().
 // Threads   While no call changes the grid, any thread may query here().grid(). Make all other calls from the thread
@@ -42,9 +43,9 @@ struct DistributedConfig {
     RankGridConfig rankGrid;
 
     /// update() cuts space again if the largest load of a rank exceeds this factor times the mean load. Because cuts
-    /// have errors, the factor used is at least 1.04 up to 128 ranks, 1.13 for 1,024 ranks, and 1.5 for 16,384 ranks.
-    /// Valid: 1 or more. If infinite, space is cut only by balanceNow() and, if you pass no partition, by the first
-    /// update().
+    /// have errors, the factor used is at least 1.04 for 128 or fewer ranks, 1.13 for 1,024 ranks, and 1.5 for 16,384
+    /// ranks. Valid: 1 or more. If infinite, space is cut only by balanceNow() and, if you pass no partition, by the
+    /// first update().
     double rebalanceAbove = 1.1;
 
     /// Longest time to wait for another rank [s]. If 0, calls wait without limit. Choose more time than any rank

@@ -31,8 +31,9 @@ template <class Scalar>
     const Camera<Scalar>& camera, const Pixel& a, const Pixel& b,
     Containment containment = Containment::touching);
 
-/// Finds the proxies whose boxes touch the volume of selectionRegion(). Containment::inside finds only boxes inside.
-/// Replaces `selected`, sorted by id. Returns the cost. Cost: Grid::visit() of the volume, and sorting.
+/// Finds the proxies whose boxes touch the volume of selectionRegion(). With Containment::inside, the boxes must lie
+/// wholly inside the volume. Replaces `selected`, sorted by id. Returns the cost. Cost: Grid::visit() of the volume,
+/// and sorting.
 template <class Scalar>
 HASHPHASE_PICKING_EXPORT QueryCost select(const Grid<Scalar>& grid, const Camera<Scalar>& camera,
                                           const Pixel& a, const Pixel& b,

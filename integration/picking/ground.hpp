@@ -19,9 +19,10 @@
 
 namespace hashphase {
 
-/// Returns the part of a ray between the heights. Except for rounding, this part meets every box between the heights
-/// that the whole ray meets. If you query with this part, results such as Picked::fraction are fractions of it, not
-/// of the whole ray. Returns an empty ray if no part is between the heights.
+/// Returns the part of a ray between the heights; of a fat ray, the part on which its box touches the space between
+/// the heights. If the whole ray meets a box wholly between the heights, so does this part, except for rounding. If
+/// you query with this part, results such as Picked::fraction are fractions of it, not of the whole ray. Returns an
+/// empty ray if there is no such part.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT RayRegion<Scalar> clipToHeights(
     const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights);

@@ -6,13 +6,15 @@
 // Frame    Change the terrain, update the grids, call findStanding() for each grid with bodies, then call clear().
 //          Each findStanding() searches all places that have changed since clear(). If you do not update a grid
 //          first, findStanding() finds the same proxies, but may cost as much as an update.
-// Boxes    This object keeps the boxes of added and removed triangles, and the old and new boxes of replaced
-//          triangles. Consecutive boxes whose union is a box are joined. Terrain::shiftOrigin() shifts the boxes.
-// Memory   Allocated once, by the constructor. If the memory is full, every pair of consecutive boxes becomes one box
-//          around both. After that, findStanding() may find more proxies, never fewer.
+// Boxes    This object keeps the boxes of added and removed triangles, and the old and new boxes of triangles
+//          that replace() changed. Consecutive boxes whose union is a box are joined. Terrain::shiftOrigin() shifts
+//          the boxes.
+// Memory   Allocated once, by the constructor. If the memory is full, the first and the second box become one box
+//          around both, as do the third and the fourth, and so on. After that, findStanding() may find more proxies,
+//          never fewer.
 // Units    metres
-// Threads  Const functions may run on several threads at once. While the terrain changes, no other thread may use
-//          this object.
+// Threads  Const functions may run on several threads at once. During clear() and changes of the terrain, no other
+//          thread may use this object.
 // Misuse   Asserted: `reach` is 0 or more (otherwise nothing is found), and the terrain outlives this object.
 
 #include <broadphase/grid.hpp>

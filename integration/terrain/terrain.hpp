@@ -6,24 +6,24 @@
 // Frame     Change the ground, then query many points in one call. changed_ground.hpp finds the bodies on changed
 //           ground.
 // Numbers   A triangle keeps its number until it is removed. Later triangles may get this number. add() assigns
-//           consecutive numbers. If all calls of add() and remove() have equally many triangles, all free numbers are
-//           used again. Otherwise, some may stay free. Free numbers and refused triangles have NaN corners, a zero
-//           normal and the null proxy.
+//           consecutive numbers. If all calls of add() and remove() take the same count of triangles, all free
+//           numbers are used again. Otherwise, some may stay free. Free numbers and refused triangles have NaN
+//           corners, a zero normal and the null proxy.
 // Grid      The grid may contain other proxies, which may change. This costs time, but does not change results.
 //           Removed triangles are never found.
 // Exact     A point on an edge or corner belongs to all triangles there, so a closed surface has no holes. Heights
 //           are computed in double precision.
 // Seams     Rounding may leave gaps between meshes with different transforms. A point in such a gap belongs to the
-//           highest triangle that is, seen from above, at most seamTolerance() away. If a second triangle is exactly
-//           below the point (ground under a bridge, for example), the point belongs to the higher triangle, or to the
-//           second if both are about equally high.
+//           highest triangle that is, seen from above, at most seamTolerance() away. If a second triangle lies on
+//           the vertical line below the point (ground under a bridge, for example), the point belongs to the higher
+//           of these two triangles, or to the second if both are about equally high.
 // Units     metres. Heights are coordinates along the up axis.
 // Threads   Several threads may run queries (const functions) at once. During other calls, no other thread may use
 //           the terrain, its grid, or its ChangedGround.
 // Memory    Queries answer 16 points at a time, and allocate only if hundreds of boxes lie below these points. If
 //           memory runs out during a change, the terrain stays unchanged.
-// Bad data  add() and replace() refuse and list triangles with a bad corner. Queries find no ground for bad points
-//           and radii.
+// Bad data  add() and replace() refuse and list triangles with a bad corner (see add()). Queries find no ground for
+//           points with a NaN, and for bad radii (see restingHeight()).
 // Misuse    These fail an assertion and change nothing: a number of corners or indices that is no multiple of 3, bad
 //           tolerances, more than 2^32 - 1 triangles, numbers for replace() and remove() that are free or not below
 //           size(). Asserted (otherwise undefined behaviour): spans have equal lengths; numbers for corners(),
@@ -105,8 +105,8 @@ public:
     /// beyond the last vertex.
     AddedTriangles add(std::span<const Point> vertices, std::span<const std::uint32_t> indices);
 
-    /// Replaces the corners of the triangles with numbers `first`, `first` + 1 and so on. Refuses triangles as add()
-    /// does. Triangles keep their numbers. A triangle keeps its proxy if it was accepted before and is accepted now.
+    /// Replaces the corners of triangles number `first`, `first` + 1 and so on. Refuses triangles as add() does.
+    /// Triangles keep their numbers. A triangle keeps its proxy if it was accepted before and is accepted now.
     /// Unchanged triangles cost no update of the grid, and ChangedGround does not record them. To change how many
     /// triangles there are, call remove() and add(). Allocates if a replaced triangle was refused before, or is
     /// refused now; otherwise rarely, and a few kB at most. Asserted: none of the numbers is free. Cost: O(given
@@ -156,17 +156,18 @@ public:
     /// seamTolerance(). Set a tolerance if you computed the corners from larger numbers than the two lengths in
     /// seamTolerance() (for example, far from the origin), or if the tolerance must not depend on the present
     /// triangles. Gaps up to twice the tolerance are closed. Ledges extend outwards by the tolerance. clear() keeps
-    /// the setting. Asserted: 0 to kFarthest; if not, nothing changes. Cost: O(1).
+    /// the setting. Asserted: the tolerance is std::nullopt, or at least 0 and at most kFarthest. If not, nothing
+    /// changes. Cost: O(1).
     void setSeamTolerance(std::optional<Scalar> tolerance);
 
     /// Returns the tolerance [m] at the point: the tolerance that you set, or the automatic tolerance, by which
     /// rounding may move a nearby edge. The automatic tolerance is 8 epsilon of Scalar times the sum of two lengths.
-    /// A chunk is the triangles of one add() or replace(), and is present until all are removed or replaced. The
-    /// first length is the largest absolute value of the point's two coordinates along the ground, with the present
-    /// origin and with each earlier origin since a present chunk was added. The second length is the size of the
-    /// largest present chunk, rounded up to a power of two, at most 16 km. The size of a chunk is its largest extent
-    /// plus its largest absolute height when it was added. For chunks of size 64 m in single precision, the tolerance
-    /// is 0.06 mm at the origin, and 1 mm at 1 km; in double precision 2 pm at 1 km.
+    /// A chunk is the triangles of one add() or replace(), and is present until all its triangles are removed or
+    /// replaced. The first length is the largest absolute value of the point's two horizontal coordinates, with the
+    /// present origin and with each earlier origin since the oldest present chunk was added. The second length is the
+    /// size of the largest present chunk, rounded up to a power of two, at most 16 km. The size of a chunk is its
+    /// largest extent plus its largest absolute height when it was added. For chunks of size 64 m in single
+    /// precision, the tolerance is 0.06 mm at the origin, and 1 mm at 1 km; in double precision 2 pm at 1 km.
     [[nodiscard]] Scalar seamTolerance(const Point& point) const noexcept {
         return setTolerance_
                    ? *setTolerance_
@@ -274,7 +275,8 @@ private:
         column.max()[up_] = point[up_];
     }
 
-    /// Returns the number of the triangle whose proxy has this index, or kNone.
+    /// Returns the number of the triangle whose proxy has the index id.index, or kNone. Ignores id.generation, so the
+    /// id of a removed proxy with the same index also finds this triangle.
     [[nodiscard, HASHPHASE_ALWAYS_INLINE]] std::uint32_t numberOf(ProxyId id) const noexcept {
         return id.index < triangleOfProxy_.size() ? triangleOfProxy_[id.index] : kNone;
     }
