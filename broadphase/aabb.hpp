@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Axis-aligned bounding boxes, and overlaps(), which tests two boxes.
+// Axis-aligned bounding boxes, and overlaps(), which tests if two boxes overlap.
 //
 //     const Aabb<float> crate = boxAround<float>({0, 1, 0}, {0.5F, 1, 0.5F});
 //     if (overlaps(crate, boxBetween<float>({0, 0, 0}, {4, 2.5F, 1}))) { ... }

@@ -40,8 +40,8 @@ struct FiledCells {
 };
 
 /// Lists all cells that contain proxies, and the proxies in no cell. Unlike a query, it does not sort changed proxies
-/// into cells (except to finish a shiftOrigin() or a failed update()). Threads: as queries. Cost: O(n log n) for n
-/// proxies.
+/// into cells (except to finish an earlier call, such as a shiftOrigin() or a failed update()). Threads: as queries.
+/// Cost: O(n log n) for n proxies.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT FiledCells<Scalar> filedCells(const Grid<Scalar>& grid);
 

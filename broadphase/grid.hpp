@@ -206,8 +206,9 @@ public:
     /// it itself. Cost: O(1), or as update().
     void expectQueries(std::size_t count) const { store_.expectQueries(count); }
 
-    /// Like expectQueries(), for rays. Also builds the box trees that make rays fast, if the rays cast so far and
-    /// `count` more cost as much as building them. Cost: O(1), or as update() and a sort of the proxies.
+    /// Like expectQueries(), for rays. Also builds the box trees that make rays fast, if the rays since the last sort
+    /// into cells, and `count` more rays, may cost as much as building these trees. Cost: O(1), or as update() and a
+    /// sort of the proxies.
     void expectRays(std::size_t count) const { store_.expectRays(count); }
 
     /// Offers every proxy whose cellsOf() include `cell` to the collector, but never a proxy whose box is not finite.

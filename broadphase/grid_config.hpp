@@ -30,8 +30,9 @@ struct GridConfig {
     friend bool operator==(const GridConfig&, const GridConfig&) = default;
 };
 
-/// Returns a sentence that names the invalid field and its valid range; empty for a valid configuration. Grid
-/// constructors throw std::invalid_argument with this sentence. To avoid exceptions, call configError() first.
+/// Returns a sentence that names the invalid field and its valid range; empty for a valid configuration. Constructors
+/// that receive an invalid GridConfig throw std::invalid_argument with this sentence. To avoid exceptions, call
+/// configError() first.
 [[nodiscard]] HASHPHASE_BROADPHASE_EXPORT std::string configError(const GridConfig& config);
 
 }  // namespace hashphase

@@ -15,8 +15,8 @@
 // Failure  Calls can throw std::bad_alloc, and exceptions of the filter. If update() throws, the next update()
 //          reports all changes since the last update() that returned. Any other call that throws changes nothing.
 // Memory   grows with proxies and pairs. Pairs normally remembers refused candidates: all other candidates are pairs.
-//          Above 32 refused candidates per proxy plus four per pair, it remembers the pairs instead. In that case,
-//          update() searches again for all overlaps of changed proxies.
+//          Above a total of 32 refused candidates per proxy plus four per pair, it remembers the pairs instead. In
+//          that case, update() searches again for all overlaps of changed proxies.
 // Late     You may create Pairs for a grid that has proxies, and replace Pairs between two updates.
 // Misuse   Asserted: a grid has at most one Pairs; the filter calls only const functions of the grid and Pairs.
 

@@ -20,7 +20,7 @@ struct SweepCost {
     std::uint32_t sweeping = 0;        ///< proxies that swept
     std::uint32_t segments = 0;        ///< searched boxes, each around a path or a part of a path
     std::uint32_t rays = 0;            ///< long paths that were searched as a ray
-    std::uint64_t boxesTested = 0;     ///< boxes tested with segments, rays or other sweeping boxes
+    std::uint64_t boxesTested = 0;     ///< tests of a box with a segment, a ray or another sweeping box
     std::uint64_t contactsTested = 0;  ///< calls of firstContact(), not counting calls for rays
 };
 

@@ -34,7 +34,7 @@ struct RadarWindow {
     std::uint32_t layers = 0;  ///< number of cells along the up axis; 0: one layer for all heights
     UpAxis up = UpAxis::y;
 
-    /// If `heading` is unset, cell borders are at multiples of `cellSize`. Counts of unmoved proxies do not change
+    /// If `heading` is unset, cell borders are at multiples of `cellSize`. If no proxy moves, counts do not change
     /// while the centre moves within a cell, or if you shift the grid's origin and the centre together by a multiple
     /// of `cellSize`. The first column is columns / 2 cells (rounded down) before the cell that contains the centre.
     /// The same rule holds for rows and layers.

@@ -21,8 +21,9 @@
 
 namespace hashphase {
 
-/// A ParallelFor: with a SpatialHashConfig, set config.parallelFor = hashphase::bulletFor. If the loop throws, for
-/// example std::bad_alloc, waits for all threads, and rethrows the first exception on the caller's thread.
+/// A ParallelFor. To use it in a broadphase, set SpatialHashConfig::parallelFor to hashphase::bulletFor. If the loop
+/// throws, for example std::bad_alloc, waits for all threads, and rethrows the first exception on the caller's
+/// thread.
 inline void bulletFor(std::size_t count, std::size_t grain, LoopBody body) {
     struct Body : btIParallelForBody {
         const LoopBody& loop;

@@ -28,8 +28,8 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// Moves the world's origin to `shift` [m]. Subtracts `shift` from the transforms and interpolation transforms of
 /// collision objects, from motion states, contact points, joints between a body and the world, and the broadphase's
 /// boxes. Velocities and sleep states do not change. All contacts and pairs persist. Reads and sets each motion
-/// state, even if its body sleeps. Shift everything else yourself: bodies outside the world, and hashphase's Zones,
-/// Camera and Terrain. Returns whether the world was shifted. If false, nothing has changed. Cost: O(objects +
+/// state, even if its body sleeps. Shift everything else yourself, such as bodies outside the world, and hashphase's
+/// Zones, Camera and Terrain. Returns whether the world was shifted. If false, nothing has changed. Cost: O(objects +
 /// contacts + joints), plus SpatialHashBroadphase::shiftOrigin().
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btDynamicsWorld& world,
                                                             SpatialHashBroadphase& broadphase,

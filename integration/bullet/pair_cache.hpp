@@ -17,11 +17,11 @@
 //           change the cache, and so may the callback of processAllOverlappingPairs(). The filter must not change the
 //           cache.
 // Removal   If your program removes a pair, the next calculateOverlappingPairs() of a SpatialHashBroadphase adds it
-//           again, unless its proxies have separated or the filter refuses it. A broadphase that got the cache as a
-//           btOverlappingPairCache* adds it only when its proxies meet again. With PairOrder::canonical, the
-//           algorithms of pairs that removeOverlappingPair() and update() remove outside processAllOverlappingPairs()
-//           are freed later: when the whole array is next read, or when the pairs of any proxy are next removed or
-//           cleaned. In all other cases, algorithms are freed immediately.
+//           again, unless its proxies have separated or the filter refuses it. Exception: a SpatialHashBroadphase
+//           that got the cache as a btOverlappingPairCache* adds it only when its proxies meet again. With
+//           PairOrder::canonical, the algorithms of pairs that removeOverlappingPair() and update() remove outside
+//           processAllOverlappingPairs() are freed later: when the whole array is next read, or when the pairs of
+//           any proxy are next removed or cleaned. In all other cases, algorithms are freed immediately.
 // Memory    Throws std::bad_alloc when memory runs out. In that case, a call for one pair has changed nothing. A call
 //           for many pairs may have removed some or all of its pairs. It has added none, or some if it works like
 //           single calls (see update()). Removing one proxy's pairs always works; without memory, it scans all
@@ -247,7 +247,7 @@ public:
         return (a.m_collisionFilterGroup & b.m_collisionFilterMask) != 0 &&
                (b.m_collisionFilterGroup & a.m_collisionFilterMask) != 0;
     }
-    /// Returns the filter callback. If none is set, but pairs are ignored or the broadphase is a WorldsBroadphase,
+    /// Returns the filter callback. If none is set, but the broadphase ignores pairs or is a WorldsBroadphase,
     /// returns a callback that checks groups and masks. Reason: Bullet's casts of fast bodies call
     /// needsBroadphaseCollision() only if there is a callback.
     btOverlapFilterCallback* getOverlapFilterCallback() override;
@@ -275,8 +275,8 @@ public:
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept;
 
-    /// Frees unused memory; pairs move. A SpatialHashBroadphase calls this function automatically. Asserted: the
-    /// filter is not running. Cost: O(pairs).
+    /// Frees unused memory; pairs move. A SpatialHashBroadphase calls this function automatically, unless it got the
+    /// cache as a btOverlappingPairCache*. Asserted: the filter is not running. Cost: O(pairs).
     void releaseUnusedMemory() noexcept;
 
     /// Returns a sentence about a broken invariant; empty if all of these hold:

@@ -217,7 +217,7 @@ public:
     /// PairOrder::canonical (see Removal in pair_cache.hpp). The pair stays ignored until stopIgnoringPair(), until
     /// collisionChecksChanged() for one of the proxies (see there), or until one of them is destroyed, also by
     /// refreshBroadphaseProxy(). Asserted: the proxies differ. Cost: O(1), plus removing a pair from the cache; if
-    /// the cache defers removal, a pass over all pairs.
+    /// the cache defers removal, plus sorting all pairs.
     void ignorePair(btBroadphaseProxy* a, btBroadphaseProxy* b, btDispatcher* dispatcher);
     /// Ends ignorePair(). If the proxies overlap and the filter accepts them, adds their pair immediately. Cost: as
     /// ignorePair().
@@ -235,12 +235,12 @@ public:
     void collisionChecksChanged(std::span<btBroadphaseProxy* const> proxies,
                                 btDispatcher* dispatcher);
 
-    /// Frees the algorithms and contacts of the proxy's pairs, also in ghost objects' pair caches. The pairs stay.
-    /// After a change of shape, scale, collision margin or other contact data, call this function and
-    /// btCollisionWorld::updateSingleAabb() before the next step. If the cache has no deferred removal, calls the
-    /// ghost callback as if each pair was removed and added again; a cache not passed as a PairCache loses pairs that
-    /// its filter now refuses. If the callback itself removes a pair, it is called again for this removal. Cost: as
-    /// PairCache::renewPairsContainingProxy(); with another cache, a pass over all pairs.
+    /// Frees the algorithms and contacts of the proxy's pairs. The pairs stay. After a change of shape, scale,
+    /// collision margin or other contact data, call this function and btCollisionWorld::updateSingleAabb() before the
+    /// next step. If the cache has no deferred removal, calls the ghost callback as if each pair was removed and
+    /// added again: ghost objects free their algorithms too. In that case, a cache not passed as a PairCache loses
+    /// pairs that its filter now refuses. If the ghost callback itself removes a pair, it is called again for this
+    /// removal. Cost: as PairCache::renewPairsContainingProxy(); with another cache, a pass over all pairs.
     void shapeChanged(btBroadphaseProxy* proxy, btDispatcher* dispatcher);
 
     /// Subtracts `shift` from every box: see Grid::shiftOrigin(). Pairs do not change. If rounding makes boxes
@@ -276,8 +276,8 @@ public:
     void releaseUnusedMemory() noexcept;
 
     /// Returns a sentence about a broken invariant of the grid, sweeps, pairs, or a PairCache that the broadphase
-    /// created; empty if all hold. Unless the program has removed pairs from this cache, it must have as many pairs
-    /// as the broadphase. Call it after calculateOverlappingPairs().
+    /// created; empty if all hold. Unless the program has removed pairs from this cache, the cache must have as many
+    /// pairs as the broadphase. Call validate() after calculateOverlappingPairs().
     [[nodiscard]] std::string validate() const;
 
 private:

@@ -110,10 +110,10 @@ public:
     /// Reads bytes that write() made of a world with the same objects, such as a world built by the same calls. Finds
     /// objects by unique ids of proxies, joints by type and bodies, characters by ghosts. If some are not in this
     /// world, pass them as `returned`: objects and joints in the order of the writer's world at save(), characters in
-    /// any order. If objects are missing and you pass none, the fault lists their unique ids in this order. Objects
-    /// keep their present shapes. A compound shape and its child compounds must have the same getUpdateRevision() as
-    /// in the writer at save(). If another object has a saved id by chance, read() takes this wrong object, unless
-    /// its type or the getUpdateRevision() of its compound shape differs.
+    /// any order. If you pass too few objects, the fault lists the unique ids of all objects that are not in this
+    /// world, in the writer's order. Objects keep their present shapes. A compound shape and its child compounds must
+    /// have the same getUpdateRevision() as in the writer at save(). If another object has a saved id by chance,
+    /// read() takes this wrong object, unless its type or the getUpdateRevision() of its compound shape differs.
     /// Returns an empty string, or a sentence about the fault. After a fault, nothing has changed. After success,
     /// call restore() with the same `returned`. With equal inputs, later steps give the same bits as the writer's
     /// steps. Damaged bytes are refused. Forged bytes may put objects anywhere, but do no other harm: authenticate

@@ -56,8 +56,8 @@ struct WorldsConfig {
     /// Before these calls, set the value that worldOf reads: the user index of a new object is -1, an invalid number.
     std::function<int(const btCollisionObject& object)> worldOf{};
 
-    /// The settings that every world gets. each.parallelFor updates several worlds at the same time, every world on
-    /// one thread.
+    /// The settings that every world gets. each.parallelFor updates several worlds at the same time, and each world
+    /// on one thread.
     SpatialHashConfig each{};
 };
 

@@ -61,8 +61,8 @@ public:
 
     [[nodiscard]] bool isEmpty() const noexcept { return corners_.empty(); }
 
-    /// The polygon's corners, in the direction of rotation from the first axis of Point to the second. A point has
-    /// one corner, a line has two, an empty polygon has none.
+    /// The polygon's corners, in the direction of rotation from the first axis of Point to the second. If the
+    /// polygon is only a point, there is one corner; if it is a line, two; if it is empty, none.
     [[nodiscard]] std::span<const Point> corners() const noexcept {
         return {corners_.begin(), corners_.end()};
     }

@@ -5,8 +5,8 @@
 //
 // Exact     The set contains every proxy that the filter accepts and whose box touches the volume. The set may also
 //           contain other proxies: near an edge of the volume, within the margin, or from an earlier frame.
-//           overdraw() counts these other proxies. If the volume has Containment::inside, read "lies inside" for
-//           "touches" in this header.
+//           overdraw() counts these other proxies. If the volume has Containment::inside, "touches" in this header
+//           means "lies wholly inside".
 // Frame     Call look() once a frame, with the current frustum.
 // Threads   During look(), other threads may query the grid, but must not change the grid or use this object.
 // Units     metres

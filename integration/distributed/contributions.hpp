@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Zlib
 #pragma once
 
-// Packs bytes that a rank (process) computes for ghosts (copies of other ranks' objects), such as contact forces, for
-// the ranks that own these objects.
+// Packs bytes, such as contact forces, that a rank (process) computes for ghosts. Ghosts are copies of other ranks'
+// objects. The bytes go to the ranks that own these objects.
 //
 // Transport  Your program sends the parcels, as for RankGrid.
-// Frame      All ranks call pack() and finish(), after RankGrid::finish() and before the next change of a RankGrid.
+// Frame      All ranks call pack() and finish(), after RankGrid::finish() and before the next change on any rank.
 // Result     Deterministic: equal calls give equal results.
 // Failure    finish() throws RankError if a parcel is invalid.
 

@@ -146,7 +146,8 @@ public:
         return grid_.contains(id) && (marks_[id.index] & kOwned) != 0;
     }
 
-    /// Returns the rank that owns the object, or the ghost's object. Asserted: the id is valid in this grid.
+    /// Returns the rank that owns the object; for a ghost, the rank that owns the ghost's object. Asserted: the id is
+    /// valid in this grid.
     [[nodiscard]] std::uint32_t homeOf(ProxyId id) const;
 
     /// Returns the GlobalId of an object or ghost. Until the next finish(), also accepts proxies that were removed in

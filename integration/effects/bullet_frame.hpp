@@ -9,9 +9,9 @@
 //
 //     effect       setting in Bullet                      consequence without the effect
 //     motion       none: step() moves bodies              step() moves no body: it updates boxes, pairs and contacts.
-//                                                         Without pairs too, step() does nothing: call updateAabbs()
-//                                                         after you move bodies. Do not call stepSimulation(): it
-//                                                         moves bodies
+//                                                         If pairs is undeclared too, step() does nothing: call
+//                                                         updateAabbs() after you move bodies. Do not call
+//                                                         stepSimulation(): it moves bodies
 //     terrain      none: the ground is your static body   no ground: do not add its body
 //                  (static_triangles.hpp)
 //     pairs        the world's overlap filter             no contacts, ghost objects' lists, response or sweep

@@ -39,8 +39,8 @@ struct MotionEffect {
 };
 
 /// In each frame, puts every awake body on the ground below its centre, from any height. Ground above the centre
-/// counts too, up to the distance that the body moves in the frame: bodies climb slopes up to 45 degrees. Bodies
-/// without such ground are not changed. Needs motion.
+/// counts too if it is at most as far above as the body moves in the frame: bodies climb slopes up to 45 degrees.
+/// Bodies without such ground are not changed. Needs motion.
 struct TerrainEffect {
     UpAxis up =
         UpAxis::y;  ///< declaring this effect with another axis removes all triangles of the ground
@@ -109,8 +109,8 @@ struct ProximityEffect {
 
 /// Finds the proxies in zones that you add (ai/zones.hpp).
 struct ZonesEffect {
-    /// Zones are far if they do not touch the cube around the interest (Observers::setInterest()) with this half edge
-    /// [m]. ConvexRegions with Containment::inside are never far.
+    /// A zone is far if it does not touch the cube that extends this far [m] from the interest
+    /// (Observers::setInterest()) along each axis. ConvexRegions with Containment::inside are never far.
     double interestRadius = std::numeric_limits<double>::infinity();
     std::uint32_t farFrames = 1;  ///< far zones are searched only in every n-th frame
 };

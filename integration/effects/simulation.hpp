@@ -14,7 +14,7 @@
 //             to the last bit for any number of threads, and for any other declared effects.
 // Bodies      A body takes part in those effects of Body::effects that are declared. If it takes no part in motion,
 //             it stands still, and other bodies bounce off it. If it takes no part in response, it is a sensor: its
-//             pairs are reported, but do not bounce.
+//             pairs are reported, but their bodies do not bounce.
 // Threads     Const members may run on several threads at the same time. During other calls, no other thread may use
 //             the simulation.
 // Failure     If memory runs out in advance(), some bodies may have moved. The next frame works, and reports all
@@ -98,7 +98,7 @@ public:
 
     // --- Bodies ----------------------------------------------------------------------------------
 
-    /// Adds a sphere. Cost: O(1) amortised. After any number of calls, the next frame, pick() or select() makes one
+    /// Adds a sphere. Cost: O(1) amortised. After one or more calls, the next frame, pick() or select() makes one
     /// pass over all bodies.
     BodyId add(const Body<Scalar>& body);
 
@@ -161,9 +161,9 @@ public:
     void watchPhases(std::function<void(std::string_view)> watch);
 
     /// Lets two bodies bounce if they touch and approach each other. Use it for pairs from another broadphase.
-    /// Returns whether they bounced. They bounce only if effects() of both contain Effect::response, declared or not.
-    /// The order of `first` and `second` does not matter. To replace the response effect, call collide() after
-    /// advance() for all touching pairs, sorted by the lower index of the two bodies, then by the higher index.
+    /// Returns whether they bounced. They bounce only if effects() of both contain Effect::response, which need not
+    /// be declared. The order of `first` and `second` does not matter. To replace the response effect, call collide()
+    /// after advance() for all touching pairs, sorted by the lower index of the two bodies, then by the higher index.
     /// Results are equal to the last bit if no body sweeps or falls asleep. `restitution`: see ResponseEffect. Needs
     /// Effect::motion. Asserted: the bodies differ. Cost: O(1).
     bool collide(BodyId first, BodyId second, double restitution = 1);

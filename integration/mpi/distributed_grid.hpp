@@ -9,9 +9,9 @@
 // Balance   Each rank has a region of space. If one rank has too much work, update() cuts space into new regions.
 // Together  These calls are collective: constructor, update() (or begin() and end()), ask(), sendHome(), pairSum(),
 //           destructor. All ranks must make these calls in the same order. All other calls are local.
-// Failure   If one rank fails, collective calls on all ranks throw RankError, which names the rank and the reason: a
-//           collective call threw an exception, an exception destroyed the grid, no answer came within
-//           DistributedConfig::patience, or a message is invalid. If configurations differ, RankError names the
+// Failure   If one rank fails, collective calls on all ranks throw RankError, which names the rank and the reason: an
+//           exception in a collective call, an exception that destroyed the grid, no answer within
+//           DistributedConfig::patience, or an invalid message. If configurations differ, RankError names the
 //           setting instead of a rank. After a RankError, the grid is unusable: call MPI_Abort(). Collective calls
 //           throw again. If a process dies, the MPI library ends the program.
 // Misuse    If ranks make collective calls in different orders, or call ask() or pairSum() after a change, all ranks

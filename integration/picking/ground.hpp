@@ -20,9 +20,9 @@
 namespace hashphase {
 
 /// Returns the part of a ray between the heights; of a fat ray, the part on which its box touches the space between
-/// the heights. If the whole ray meets a box wholly between the heights, so does this part, except for rounding. If
-/// you query with this part, results such as Picked::fraction are fractions of it, not of the whole ray. Returns an
-/// empty ray if there is no such part.
+/// the heights. If a box lies wholly between the heights and the whole ray meets it, this part meets it too, except
+/// for rounding. If you query with this part, results such as Picked::fraction are fractions of it, not of the whole
+/// ray. Returns an empty ray if there is no such part.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT RayRegion<Scalar> clipToHeights(
     const RayRegion<Scalar>& ray, const HeightRange<Scalar>& heights);

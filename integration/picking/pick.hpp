@@ -46,8 +46,8 @@ template <class Scalar>
                                                                   ProxyFilter filter = acceptAll,
                                                                   QueryCost* cost = nullptr);
 
-/// Returns the nearest proxy according to the exact test. Does not call the test for boxes that the ray
-/// enters beyond a hit that the test has already returned.
+/// Returns the nearest proxy according to the exact test. Does not call the test for boxes that the ray enters
+/// beyond a hit that the test has already returned.
 template <class Scalar>
 [[nodiscard]] HASHPHASE_PICKING_EXPORT Picked<Scalar> pickNearest(
     const Grid<Scalar>& grid, const RayRegion<Scalar>& ray,

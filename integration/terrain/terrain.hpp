@@ -14,8 +14,8 @@
 // Exact     A point on an edge or corner belongs to all triangles there, so a closed surface has no holes. Heights
 //           are computed in double precision.
 // Seams     Rounding may leave gaps between meshes with different transforms. A point in such a gap belongs to the
-//           highest triangle that is, seen from above, at most seamTolerance() away. If a second triangle lies on
-//           the vertical line below the point (ground under a bridge, for example), the point belongs to the higher
+//           highest triangle that is, seen from above, at most seamTolerance() away. If the vertical line below
+//           the point meets a second triangle (ground under a bridge, for example), the point belongs to the higher
 //           of these two triangles, or to the second if both are about equally high.
 // Units     metres. Heights are coordinates along the up axis.
 // Threads   Several threads may run queries (const functions) at once. During other calls, no other thread may use
@@ -23,7 +23,7 @@
 // Memory    Queries answer 16 points at a time, and allocate only if hundreds of boxes lie below these points. If
 //           memory runs out during a change, the terrain stays unchanged.
 // Bad data  add() and replace() refuse and list triangles with a bad corner (see add()). Queries find no ground for
-//           points with a NaN, and for bad radii (see restingHeight()).
+//           points with a NaN or for bad radii (see restingHeight()).
 // Misuse    These fail an assertion and change nothing: a number of corners or indices that is no multiple of 3, bad
 //           tolerances, more than 2^32 - 1 triangles, numbers for replace() and remove() that are free or not below
 //           size(). Asserted (otherwise undefined behaviour): spans have equal lengths; numbers for corners(),
@@ -105,8 +105,8 @@ public:
     /// beyond the last vertex.
     AddedTriangles add(std::span<const Point> vertices, std::span<const std::uint32_t> indices);
 
-    /// Replaces the corners of triangles number `first`, `first` + 1 and so on. Refuses triangles as add() does.
-    /// Triangles keep their numbers. A triangle keeps its proxy if it was accepted before and is accepted now.
+    /// Replaces the corners of the triangles with numbers `first`, `first` + 1 and so on. Refuses triangles as add()
+    /// does. Triangles keep their numbers. A triangle keeps its proxy if it was accepted before and is accepted now.
     /// Unchanged triangles cost no update of the grid, and ChangedGround does not record them. To change how many
     /// triangles there are, call remove() and add(). Allocates if a replaced triangle was refused before, or is
     /// refused now; otherwise rarely, and a few kB at most. Asserted: none of the numbers is free. Cost: O(given
