@@ -40,7 +40,7 @@ public:
     using OfMany = FunctionRef<void(std::span<const ProxyPair> asked, std::span<char> accepted)>;
 
     template <std::convertible_to<OfOne> Ask>
-    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): no PairFilter converts to OfOne
+    // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): a PairFilter is copied, as it does not convert to OfOne
     PairFilter(Ask&& ask [[HASHPHASE_LIFETIME_BOUND]]) noexcept : ask_(ask, kAskEach) {}
 
     template <class Ask>

@@ -39,8 +39,8 @@
 
 namespace hashphase {
 
-/// Finds neighbours. Keeps its memory: a frame that needs no more memory than before allocates only for additional
-/// threads.
+/// Finds neighbours. Keeps its memory: a frame that needs no more memory and uses no more threads than before
+/// allocates nothing.
 template <class Scalar>
 class HASHPHASE_BROADPHASE_TEMPLATE_EXPORT RadiusSearch {
 public:

@@ -388,7 +388,7 @@ private:
     // Implements setMargin(), and setAabb() in the general case.
     void setAnyAabb(Proxy& proxy, const btVector3& aabbMin, const btVector3& aabbMax,
                     btScalar margin, btDispatcher* dispatcher);
-    // Returns true if setting this box cannot add pairs at once. See detail/lone_moves.inl.
+    // Returns true if setting this box adds no pairs immediately. See detail/lone_moves.inl.
     [[nodiscard]] bool movesAlone(const Proxy& proxy, const btVector3& aabbMin,
                                   const btVector3& aabbMax, const btDispatcher* dispatcher) const;
     [[nodiscard]] static Aabb<btScalar> grown(const Aabb<btScalar>& box, btScalar margin);

@@ -42,8 +42,8 @@
 // Callbacks restore() calls contact and ghost callbacks only for objects that it removes, as removeCollisionObject()
 //           does. These callbacks may remove other objects that were added after save(), but must add none.
 // Calls     Call save() and restore() between steps. Within callbacks of the broadphase or its cache, they return a
-//           fault. Never call them in tick callbacks or motion states: such calls are not detected, and forces of the
-//           step count twice.
+//           fault. Never call them in tick callbacks or motion states: such calls are not detected, and apply the
+//           forces of the step twice.
 // Memory    Another save() into the same snapshot allocates no memory, unless the world has grown. Throws
 //           std::bad_alloc when memory runs out. In that case, save() leaves the snapshot empty, and restore()
 //           changes nothing.

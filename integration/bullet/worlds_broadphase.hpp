@@ -52,7 +52,7 @@ struct WorldsConfig {
     int worldCount = 1;
 
     /// Required. Returns the number of the object's world, from 0 to worldCount - 1. createProxy() calls this
-    /// function for every object, and so do btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy().
+    /// function for its object, and so do btCollisionWorld::addCollisionObject() and refreshBroadphaseProxy().
     /// Before these calls, set the value that worldOf reads: the user index of a new object is -1, an invalid number.
     std::function<int(const btCollisionObject& object)> worldOf{};
 

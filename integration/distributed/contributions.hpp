@@ -30,7 +30,7 @@ struct Contribution {
 class HASHPHASE_DISTRIBUTED_EXPORT Contributions {
 public:
     /// Returns parcels for other ranks, sorted by receiver, valid until the next pack(). A ghost may have several
-    /// contributions. Asserted: proxies are ghosts, and contributions have at most 65,536 bytes. Without assertions,
+    /// contributions. Asserted: each proxy is a ghost, and each contribution has at most 65,536 bytes. Without assertions,
     /// leaves out invalid contributions. Cost: O(contributions).
     template <class Scalar>
     std::span<const Parcel> pack(const RankGrid<Scalar>& grid,

@@ -60,7 +60,7 @@ enum class SceneCounter : std::uint8_t {
     cullingBoxesTested,  ///< boxes tested against the view
     framesCulledLate,    ///< 1 if restingCameraFrames skipped the search, so the set is old
     // Proximity.
-    agentsScanned,     ///< agents that searched; if turns is 1, also late agents that may be near them
+    agentsScanned,     ///< agents that searched and, if ProximityEffect::turns is 1, late agents near them
     neighboursTested,  ///< tested distances between agents
     agentsLate,        ///< agents that did not search: far, or not their turn
     // Zones.

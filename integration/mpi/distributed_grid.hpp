@@ -14,8 +14,8 @@
 //           DistributedConfig::patience, or an invalid message. If configurations differ, RankError names the
 //           setting instead of a rank. After a RankError, the grid is unusable: call MPI_Abort(). Collective calls
 //           throw again. If a process dies, the MPI library ends the program.
-// Misuse    If ranks make collective calls in different orders, or call ask() or pairSum() after a change, all ranks
-//           throw RankError. Destroy the grid before MPI_Finalize(), and not between begin() and end().
+// Misuse    If ranks make collective calls in different orders, or call ask() or pairSum() between a change of their
+//           objects and the next update(), all ranks throw RankError. Destroy the grid before MPI_Finalize(), and not between begin() and end().
 // Threads   While no call changes the grid, any thread may query here().grid(). Make all other calls from the thread
 //           that may call MPI (MPI_THREAD_FUNNELED).
 // Machines  All machines must be of one kind: messages contain numbers in machine format.

@@ -95,8 +95,8 @@ public:
     // --- Triangles -------------------------------------------------------------------------------
 
     /// Adds triangles, three corners [m] each, in either orientation. Refuses triangles with a coordinate that is
-    /// NaN, infinite or beyond kFarthest. Vertical triangles and triangles of zero area carry spheres, but have no
-    /// height: surfaceBelow() does not find them. The triangles get the lowest consecutive free numbers. If no run of
+    /// NaN, infinite or beyond kFarthest. Spheres can rest on vertical triangles and triangles of zero area, but
+    /// surfaceBelow() does not find these triangles. The triangles get the lowest consecutive free numbers. If no run of
     /// free numbers is long enough, size() grows. If size() stays constant because free numbers are used again, add()
     /// soon allocates nothing except `refused`. Cost: O(given triangles) amortised, and O(runs of free numbers).
     AddedTriangles add(std::span<const Point> corners);
