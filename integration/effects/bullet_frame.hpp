@@ -29,7 +29,7 @@
 //            shifted values to Zones::set(), setView() and setInterest().
 // Ignored    ResponseEffect::restitution: each body has its own restitution (WorldEffects::restitution sets all).
 //            SweepEffect::mode: set SpatialHashConfig::sweep instead. SleepingEffect::framesBeforeSleep: bodies fall
-//            asleep after gDeactivationTime, 2 s.
+//            asleep after gDeactivationTime, 2 s. SceneEffects::grid: set SpatialHashConfig::grid instead.
 // Errors     A finite face of motion.bounds, or a finite sleeping.interestRadius, is an error. Instead, put static
 //            planes at the bounds, and deactivate far bodies.
 
