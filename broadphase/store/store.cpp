@@ -96,12 +96,17 @@ std::uint32_t Store<Scalar>::takeIndex() {
 
 template <class Scalar>
 void Store<Scalar>::reserve(std::size_t count) {
+    makeRoom(count);
+    proxies.reservedCount = count;
+}
+
+template <class Scalar>
+void Store<Scalar>::makeRoom(std::size_t count) {
     checkCount(count, kMostProxies,
                "A grid holds at most 268,435,456 proxies. Remove some, or use another grid.");
     const std::size_t removed = proxies.removed.count + proxies.removedImmediate.count;
     proxies.reserveRecords(count + removed);
     proxies.reserveLists(count + removed);
-    proxies.reservedCount = count;
 }
 
 template <class Scalar>

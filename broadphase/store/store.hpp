@@ -65,6 +65,8 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Store {
     [[nodiscard]] std::uint32_t add(const Box& box, bool restsAtOnce, const ProxyGroups& groups);
     [[nodiscard]] std::uint32_t takeIndex();
     void reserve(std::size_t count);
+    /// As reserve(), but does not keep the room after a peak.
+    void makeRoom(std::size_t count);
     // Inline, as calls would cost what they do.
     [[HASHPHASE_ALWAYS_INLINE]] void move(std::uint32_t proxyIndex, const Box& box) {
         if (!moveIfInPlace(proxyIndex, box)) {

@@ -47,7 +47,7 @@ void SpatialHashBroadphase::createProxies(std::span<const ProxyDefinition> defin
     HASHPHASE_ASSERT(definitions.size() == proxies.size(),
                      "createProxies(): definitions and proxies have different lengths. Pass room "
                      "for one proxy for each definition.");
-    grid_.reserve(grid_.size() + definitions.size());
+    grid_.store().makeRoom(grid_.size() + definitions.size());
     proxies_.reserve(grid_.size() + definitions.size());
     detail::ensureCapacity(uniqueIds_, grid_.size() + definitions.size());
     for (std::size_t i = 0; i < definitions.size(); ++i) {

@@ -150,7 +150,7 @@ auto Terrain<Scalar>::prepare(std::uint32_t first, std::size_t count, CornersOf 
     detail::ensureCapacity(proxies_, first + count);
     if (newProxyCount > 0) {
         detail::ensureCapacity(triangleOfProxy_, grid_->indexLimit() + newProxyCount);
-        grid_->reserve(grid_->size() + newProxyCount);
+        grid_->store().makeRoom(grid_->size() + newProxyCount);
     }
     return plan;
 }

@@ -168,5 +168,22 @@ TEST(ProxyBatch, CreatesWhatTheDefinitionsSay) {
     EXPECT_TRUE(isSame(boxOf(*proxies[1]), {{1, 2, 3}, {4, 5, 6}}));
 }
 
+TEST(ProxyBatch, IsNoReservation) {
+    SpatialHashBroadphase broadphase;
+    btBroadphaseProxy* const stays =
+        broadphase.createProxy({0, 0, 0}, {1, 1, 1}, 0, nullptr, 1, -1, nullptr);
+    std::vector<btBroadphaseProxy*> proxies(20'000);
+    broadphase.createProxies(std::vector<ProxyDefinition>(proxies.size()), proxies, nullptr);
+    const std::size_t peak = broadphase.memoryBytes();
+    broadphase.destroyProxies(proxies, nullptr);
+    for (int frame = 0; frame < 600; ++frame) {
+        const auto x = static_cast<btScalar>(frame);
+        broadphase.setAabb(stays, {x, 0, 0}, {x + 1, 1, 1}, nullptr);
+        broadphase.calculateOverlappingPairs(nullptr);
+    }
+    EXPECT_LT(broadphase.memoryBytes(), peak / 4);
+    broadphase.destroyProxy(stays, nullptr);
+}
+
 }  // namespace
 }  // namespace hashphase::test

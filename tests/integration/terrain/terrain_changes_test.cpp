@@ -338,5 +338,35 @@ TYPED_TEST(TerrainChanges, OfNoTrianglesAreNone) {
     EXPECT_EQ(this->heightAt(terrain), 1);
 }
 
+TEST(TerrainMemory, IsThatOfAProgramThatReserves) {
+    const std::vector<Vector3<float>> corners{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+    for (const std::size_t reserved : {0U, 20'000U}) {
+        Grid<float> grid;
+        grid.reserve(reserved);
+        Terrain<float> terrain(grid);
+        const auto boxAt = [](int x) {
+            const Vector3<float> corner(static_cast<float>(x), 5, 0);
+            return Aabb<float>(corner, corner + Vector3<float>::Ones());
+        };
+        const ProxyId moving = grid.add(boxAt(0));
+        std::vector<Vector3<float>> many;
+        for (int i = 0; i < 10'000; ++i) {
+            many.insert(many.end(), corners.begin(), corners.end());
+        }
+        terrain.add(many);
+        terrain.clear();
+        const std::size_t before = grid.memoryBytes();
+        for (int frame = 0; frame < 600; ++frame) {
+            grid.move(moving, boxAt(frame));
+            grid.update();
+        }
+        if (reserved > 0) {
+            EXPECT_GT(grid.memoryBytes(), before / 4 * 3);
+        } else {
+            EXPECT_LT(grid.memoryBytes(), before / 10);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace hashphase::test
