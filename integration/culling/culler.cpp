@@ -53,10 +53,10 @@ void Culler<Scalar>::noteMoves(Scalar moved) noexcept {
 }
 
 // Whoever touches the view now touched what was looked through before, if since then nobody has moved
-// farther than the view lies inside of that.
+// farther than the view lies inside of that. Nobody knows what an infinite distance stands for, whatever the margin.
 template <class Scalar>
 bool Culler<Scalar>::keepsSet() const {
-    return moved_ <= margin_ && frustum_.isEmpty() == grown_.isEmpty() &&
+    return moved_ <= margin_ && std::isfinite(moved_) && frustum_.isEmpty() == grown_.isEmpty() &&
            !frustum_.volume().isInside && !grown_.volume().isInside &&
            grown_.contains(frustum_, moved_);
 }

@@ -149,6 +149,9 @@ TYPED_TEST(CullerTest, KeepsItsSetWithAnInfiniteFarPlaneAndGivesItUpForABadCamer
         Culler<TypeParam> sloppy(infinity);
         sloppy.look(grid, view);
         EXPECT_EQ(sloppy.count(), grid.size());
+        const auto nobody = [](ProxyId) { return false; };
+        sloppy.look(grid, view, nobody);
+        EXPECT_EQ(sloppy.count(), 0U) << "the filter has changed";
         Eigen::Matrix<TypeParam, 4, 4> bad = Eigen::Matrix<TypeParam, 4, 4>::Identity();
         bad(0, 0) = std::numeric_limits<TypeParam>::quiet_NaN();
         culler.look(grid, frustumRegion(bad, DepthRange::zeroToOne), 0);
