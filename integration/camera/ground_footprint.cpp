@@ -232,7 +232,9 @@ GroundFootprint<Scalar>::GroundFootprint(const Unaligned& matrix, DepthRange dep
         return;  // all of it is behind the eye
     }
     // Passes: what is before the farthest distance, and what is between the heights.
-    const double least = inverse.weightBehind(nearest, farthest);
+    // Farther away, products of corners or the corners themselves would overflow.
+    constexpr double kMost = std::min<double>(std::numeric_limits<Scalar>::max() / 4, 1e100);
+    const double least = inverse.weightBehind(nearest, std::min(farthest, kMost));
     using Point4 = detail::Vector4<double>;
     clip(
         corners, 6, [&](const Point4& point) { return point.w() - least; },

@@ -59,11 +59,13 @@ std::optional<Vector3<Scalar>> groundPoint(const RayRegion<Scalar>& ray,
     const auto way = static_cast<double>(ray.direction()[axis]);
     const double fraction =
         (static_cast<double>(height) - static_cast<double>(ray.from()[axis])) / way;
-    if (ray.isEmpty() || way == 0 || !(fraction >= 0 && fraction <= 1)) {
+    // The direction is rounded: a ray that ends on the plane may seem to end before it.
+    constexpr auto rounding = static_cast<double>(std::numeric_limits<Scalar>::epsilon());
+    if (ray.isEmpty() || way == 0 || !(fraction >= 0 && fraction <= 1 + rounding)) {
         return std::nullopt;
     }
-    const Vector3<double> point =
-        ray.from().template cast<double>() + fraction * ray.direction().template cast<double>();
+    const Vector3<double> point = ray.from().template cast<double>() +
+                                  std::min(fraction, 1.0) * ray.direction().template cast<double>();
     Vector3<Scalar> result = point.cast<Scalar>();
     result[axis] = height;
     return result;

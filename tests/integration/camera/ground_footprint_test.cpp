@@ -271,6 +271,23 @@ Eigen::Matrix<Scalar, 4, 4> cameraOver(const Vector3<double>& target, double far
     return cameraMatrix<Scalar>(lens, {0, 10, 0}, target);
 }
 
+// The near corners are as good as one, seen from so far.
+TYPED_TEST(Footprint, OfWhatIsEnormouslyFarDoesNotOverflow) {
+    const auto matrix = cameraOver<TypeParam>({0, 10, -20});
+    for (const double farthest : {1e36, 1e60, 1e200, 1e308}) {
+        const GroundFootprint<TypeParam> footprint(matrix, DepthRange::zeroToOne, {},
+                                                   wholeScreen<TypeParam>(), farthest);
+        EXPECT_GE(footprint.corners().size(), 3U) << farthest;
+        for (const auto& corner : footprint.corners()) {
+            EXPECT_TRUE(corner.allFinite()) << farthest;
+        }
+        const auto region = footprint.region();
+        EXPECT_GE(region.key(boxAround<TypeParam>({0, 0, -1e35}, {1, 1, 1})), 0) << farthest;
+        const double behind = std::min(farthest, sizeof(TypeParam) == sizeof(float) ? 1e37 : 1e99);
+        EXPECT_LT(region.key(boxAround<TypeParam>({0, 0, behind}, {1, 1, 1})), 0) << farthest;
+    }
+}
+
 TYPED_TEST(Footprint, EndsAtTheFarthestDistanceWhereTheHorizonIsSeen) {
     const auto matrix = cameraOver<TypeParam>({0, 10, -20});
     const GroundFootprint<TypeParam> footprint(matrix, DepthRange::zeroToOne, {},

@@ -199,6 +199,22 @@ TYPED_TEST(Ground, IsNotMetByRaysThatAreParallelOrEndBefore) {
     EXPECT_EQ(groundPoint(Ray(Point(1, 2, 3), Point(1, 2, -1)), 1, UpAxis::z), Point(1, 2, 1));
 }
 
+TYPED_TEST(Ground, IsMetByEveryRayThatEndsOnIt) {
+    Random random(0x5eed0744);
+    for (int i = 0; i < 20000; ++i) {
+        const double far = random.logBetween(1e-3, 1e6);
+        const Vector3<TypeParam> from = random.pointIn(-far, far).template cast<TypeParam>();
+        Vector3<TypeParam> to = random.pointIn(-9, 9).template cast<TypeParam>();
+        const auto height = static_cast<TypeParam>(random.between(-9, 9));
+        to.y() = height;
+        const auto point = groundPoint(RayRegion<TypeParam>(from, to), height);
+        ASSERT_TRUE(point.has_value() || from.y() == height) << i;
+        const TypeParam near =
+            8 * std::numeric_limits<TypeParam>::epsilon() * static_cast<TypeParam>(far + 9);
+        ASSERT_LE((*point - to).cwiseAbs().maxCoeff(), near) << i;
+    }
+}
+
 // What is seen between the corners is selected on the map as well, with what is hidden above it.
 TYPED_TEST(Ground, ADragCoversOnTheGroundWhateverItSelectsThere) {
     Random random(0x5eed0743);
