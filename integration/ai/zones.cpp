@@ -81,6 +81,7 @@ void Zones<Scalar>::remove(ZoneId id) {
     }
     Slot& slot = slots_[id.index];
     detail::ensureCapacity(abandoned_, abandoned_.size() + slot.occupants.size());
+    detail::ensureCapacity(freeSlots_, freeSlots_.size() + 1);  // which a copy lacks
     for (const ProxyId proxy : slot.occupants) {
         abandoned_.push_back({id, proxy});
     }

@@ -75,7 +75,7 @@ struct NamedSetting {
 };
 
 template <class Scalar>
-std::array<NamedSetting, 11> settingsOf(const DistributedConfig& config,
+std::array<NamedSetting, 12> settingsOf(const DistributedConfig& config,
                                         const Partition<Scalar>* partition, std::uint32_t ranks) {
     // -1 for none.
     double cutHash = -1;
@@ -95,6 +95,7 @@ std::array<NamedSetting, 11> settingsOf(const DistributedConfig& config,
              {"GridConfig::updatesBeforeRest",
               static_cast<double>(config.rankGrid.grid.updatesBeforeRest)},
              {"GridConfig::slack", config.rankGrid.grid.slack.value_or(-1)},
+             {"GridConfig::slack (whether it is set)", config.rankGrid.grid.slack ? 1.0 : 0.0},
              {"RankGridConfig::payloadBytes", static_cast<double>(config.rankGrid.payloadBytes)},
              {"DistributedConfig::rebalanceAbove", config.rebalanceAbove},
              {"DistributedConfig::patience", config.patience},
@@ -233,6 +234,9 @@ auto DistributedGrid<Scalar>::together(bool isBegun, const Work& work) {
         if (ranks_.failure().empty()) {
             ranks_.fail(error.what());
         }
+        throw;
+    } catch (...) {
+        ranks_.tellFailure("It threw an exception that is no std::exception.");
         throw;
     }
 }
