@@ -93,6 +93,25 @@ void printTraffic(const SwarmResult& result, std::ostream& out) {
         << fixed(100 * ghosts / mid(&RankFrame::objects), 2) << " % of the spheres.\n";
 }
 
+// The first thing in which ranks and one process differ; empty where they agree.
+std::string differenceOf(const SwarmResult& result, const SingleResult& alone) {
+    for (std::size_t frame = 0; frame < result.sums.size(); ++frame) {
+        const FrameSums& ours = result.sums[frame];
+        const FrameSums& theirs = alone.sums[frame];
+        if (!(ours == theirs)) {
+            return "In frame " + std::to_string(frame) + " the ranks report " +
+                   withThousands(ours.born.count) + " births and " +
+                   withThousands(ours.died.count) + " deaths, one process " +
+                   withThousands(theirs.born.count) + " and " + withThousands(theirs.died.count) +
+                   ", or others.";
+        }
+    }
+    return result.last == alone.last
+               ? std::string()
+               : "After the last frame the ranks have " + withThousands(result.last.count) +
+                     " pairs, one process " + withThousands(alone.last.count) + ", or others.";
+}
+
 }  // namespace
 
 DataTable ranksTable(const SwarmResult& result) {
@@ -156,22 +175,19 @@ void printSwarm(const SwarmResult& result, const std::optional<SingleResult>& al
     out << ".\n";
 }
 
-std::string differenceOf(const SwarmResult& result, const SingleResult& alone) {
-    for (std::size_t frame = 0; frame < result.sums.size(); ++frame) {
-        const FrameSums& ours = result.sums[frame];
-        const FrameSums& theirs = alone.sums[frame];
-        if (!(ours == theirs)) {
-            return "In frame " + std::to_string(frame) + " the ranks report " +
-                   withThousands(ours.born.count) + " births and " +
-                   withThousands(ours.died.count) + " deaths, one process " +
-                   withThousands(theirs.born.count) + " and " + withThousands(theirs.died.count) +
-                   ", or others.";
-        }
+bool printComparison(const SwarmResult& result, const SingleRun& alone, std::ostream& out) {
+    if (!alone.result) {
+        out << "Not compared with one process" << (alone.fault.empty() ? "" : ": ") << alone.fault
+            << ".\n";
+        return alone.fault.empty();
     }
-    return result.last == alone.last
-               ? std::string()
-               : "After the last frame the ranks have " + withThousands(result.last.count) +
-                     " pairs, one process " + withThousands(alone.last.count) + ", or others.";
+    const std::string difference = differenceOf(result, *alone.result);
+    out << (difference.empty()
+                ? "Births and deaths of every frame, and all " + withThousands(result.last.count) +
+                      " pairs of the last, are those of one process, each once."
+                : "WRONG: " + difference)
+        << '\n';
+    return difference.empty();
 }
 
 }  // namespace hashphase::demos

@@ -21,7 +21,9 @@ namespace hashphase::demos {
 void printSwarm(const SwarmResult& result, const std::optional<SingleResult>& alone,
                 std::ostream& out);
 
-/// The first thing in which ranks and one process differ, in a sentence; empty where they agree.
-[[nodiscard]] std::string differenceOf(const SwarmResult& result, const SingleResult& alone);
+/// Says whether ranks and one process agree, or that these are not compared. False if they differ, or if one process
+/// has failed.
+[[nodiscard]] bool printComparison(const SwarmResult& result, const SingleRun& alone,
+                                   std::ostream& out);
 
 }  // namespace hashphase::demos

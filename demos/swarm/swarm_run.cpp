@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
+#include <stdexcept>
 #include <thread>
 
 namespace hashphase::demos {
@@ -218,6 +220,17 @@ SingleResult runAlone(const SwarmScene& scene, std::uint32_t frames,
         result.last.add(named(pair));
     }
     return result;
+}
+
+SingleRun tryAlone(const SwarmScene& scene, std::uint32_t frames,
+                   const std::function<void(std::uint32_t frame)>& watch) {
+    try {
+        return {runAlone(scene, frames, watch), {}};
+    } catch (const std::bad_alloc&) {
+        return {std::nullopt, "it has too little memory for all spheres"};
+    } catch (const std::length_error&) {
+        return {std::nullopt, "a grid cannot hold all spheres and pairs"};
+    }
 }
 
 void meet(MPI_Comm communicator) {

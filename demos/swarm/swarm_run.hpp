@@ -9,6 +9,8 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace hashphase::demos {
@@ -67,6 +69,17 @@ struct SingleResult {
 };
 [[nodiscard]] SingleResult runAlone(const SwarmScene& scene, std::uint32_t frames,
                                     const std::function<void(std::uint32_t frame)>& watch);
+
+/// One process to compare with, if there is one.
+struct SingleRun {
+    std::optional<SingleResult> result;
+    std::string fault;  // why the run has failed; empty: it has not, or it was not made
+};
+
+/// runAlone(), which may have too many spheres for one process. Passes on what `watch` throws, but for std::bad_alloc
+/// and std::length_error.
+[[nodiscard]] SingleRun tryAlone(const SwarmScene& scene, std::uint32_t frames,
+                                 const std::function<void(std::uint32_t frame)>& watch);
 
 /// Waits for all ranks, asleep.
 void meet(MPI_Comm communicator);
