@@ -130,10 +130,12 @@ int runAccuracy(const AccuracyOptions& options, std::span<const Experiment> expe
     report.provenance.coresOfOthers = others.cores();
 
     printReport(report, options.isVerbose, console);
+    ResultFaults faults;
     if (!options.folder.empty()) {
-        writeReport(report, options.folder);
+        faults.collect([&] { writeReport(report, options.folder); });
     }
-    deliverPage(pageOf(report), page, console);
+    faults.collect([&] { deliverPage(pageOf(report), page, console); });
+    faults.throwIfAny();
     return brokenChecks(report).empty() ? kExitOk : kExitCheckFailed;
 }
 

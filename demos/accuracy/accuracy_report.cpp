@@ -251,8 +251,9 @@ Page pageOf(const AccuracyReport& report) {
 }
 
 void writeReport(const AccuracyReport& report, const std::string& folder) {
-    const auto write = [&folder](const std::string& name, const auto& writeTo) {
-        ResultFile(folder + "/" + name).write(writeTo);
+    ResultFaults faults;
+    const auto write = [&](const std::string& name, const auto& writeTo) {
+        faults.collect([&] { ResultFile(folder + "/" + name).write(writeTo); });
     };
     for (const Outcome& outcome : report.outcomes) {
         write(std::string(outcome.experiment->id) + ".json",
@@ -263,6 +264,7 @@ void writeReport(const AccuracyReport& report, const std::string& folder) {
     }
     write("advice.csv",
           [&](std::ostream& file) { writeCsv(adviceTable(allChoices(report)), file); });
+    faults.throwIfAny();
 }
 
 }  // namespace hashphase::demos

@@ -241,9 +241,13 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
     report.findings = compareFindings(measured);
 
     printReport(report, options.isVerbose, console);
-    json.write([&report](std::ostream& file) { writeJson(report, file); });
-    csv.write([&report](std::ostream& file) { writeCsv(report.findings.rows.at("csv"), file); });
-    deliverPage(pageOf(report), html, console);
+    ResultFaults faults;
+    faults.collect([&] { json.write([&](std::ostream& file) { writeJson(report, file); }); });
+    faults.collect([&] {
+        csv.write([&](std::ostream& file) { writeCsv(report.findings.rows.at("csv"), file); });
+    });
+    faults.collect([&] { deliverPage(pageOf(report), html, console); });
+    faults.throwIfAny();
     const bool isVerified =
         end.framesDone > 0 &&
         std::none_of(contestants.begin(), contestants.end(), [](const Contestant& each) {

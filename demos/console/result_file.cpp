@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Zlib
 #include <demos/console/result_file.hpp>
 
-#include <demos/scenes/input_error.hpp>
-
 #include <cerrno>
 #include <iostream>
-#include <string>
 #include <system_error>
 #include <utility>
 

@@ -8,9 +8,12 @@
 //           the run ends early or the disk is full, an older file at the path stays as it is.
 // Devices   and pipes are written directly; /dev/stdout is the program's own standard output.
 
+#include <demos/scenes/input_error.hpp>
+
 #include <filesystem>
 #include <fstream>
 #include <iosfwd>
+#include <string>
 
 namespace hashphase::demos {
 
@@ -54,6 +57,33 @@ private:
     std::filesystem::path partial_;  // empty: the target is written directly
     std::ofstream file_;
     std::ostream* stream_ = &file_;
+};
+
+/// Of several files, those that cannot be written do not cost the others.
+class ResultFaults {
+public:
+    /// Calls write(), and keeps what its InputError says.
+    template <class Write>
+    void collect(const Write& write) {
+        try {
+            write();
+        } catch (const InputError& fault) {
+            text_ += (text_.empty() ? "" : " ") + std::string(fault.what());
+        }
+    }
+
+    /// A sentence for each fault; empty: there is none.
+    [[nodiscard]] const std::string& text() const noexcept { return text_; }
+
+    /// Throws InputError with the text, if there is one.
+    void throwIfAny() const {
+        if (!text_.empty()) {
+            throw InputError(text_);
+        }
+    }
+
+private:
+    std::string text_;
 };
 
 }  // namespace hashphase::demos

@@ -181,11 +181,18 @@ int runEffects(const EffectsOptions& options, Console& console, std::size_t (*al
     provenance.coresOfOthers = others.cores();
     const Findings findings = effectsFindings(measured);
     printReport(findings, provenance, console);
-    json.write([&](std::ostream& out) { writeJson(findings, provenance, file, out); });
-    csv.write([&](std::ostream& out) { writeCsv(findings.rows.at("csv"), out); });
-    deliverPage({"What each effect costs", kIntroduction, findings.verdict + ".", findings.holds,
-                 findings.sections, provenance},
-                html, console);
+    ResultFaults faults;
+    faults.collect([&] {
+        json.write([&](std::ostream& out) { writeJson(findings, provenance, file, out); });
+    });
+    faults.collect(
+        [&] { csv.write([&](std::ostream& out) { writeCsv(findings.rows.at("csv"), out); }); });
+    faults.collect([&] {
+        deliverPage({"What each effect costs", kIntroduction, findings.verdict + ".",
+                     findings.holds, findings.sections, provenance},
+                    html, console);
+    });
+    faults.throwIfAny();
     return findings.holds.value_or(true) ? kExitOk : kExitCheckFailed;
 }
 

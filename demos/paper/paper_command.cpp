@@ -68,9 +68,11 @@ int runPaper(const PaperOptions& options, Console& console) {
     provenance.coresOfOthers = others.cores();
     PaperReport report(plan, std::move(measured), std::move(provenance));
     printReport(report, options.showMilliseconds, console);
-    json.write([&report](std::ostream& out) { writeJson(report, out); });
-    csv.write([&report](std::ostream& out) { writeCsv(report, out); });
-    deliverPage(pageOf(report), html, console);
+    ResultFaults faults;
+    faults.collect([&] { json.write([&](std::ostream& out) { writeJson(report, out); }); });
+    faults.collect([&] { csv.write([&](std::ostream& out) { writeCsv(report, out); }); });
+    faults.collect([&] { deliverPage(pageOf(report), html, console); });
+    faults.throwIfAny();
     return exitCodeOf(report);
 }
 

@@ -282,12 +282,19 @@ int runStability(const StabilityOptions& options, std::span<const BroadphaseKind
     const Findings findings = findingsOf(kStabilityDeclaration, measured);
 
     printReport(findings, provenance, console);
-    json.write(
-        [&](std::ostream& file) { writeJson(findings, provenance, options, measured, file); });
-    csv.write([&](std::ostream& file) { writeCsv(findings.rows.at("csv"), file); });
-    deliverPage({"Hard cases", kStabilityIntroduction, findings.verdict + ".", findings.holds,
-                 findings.sections, provenance},
-                html, console);
+    ResultFaults faults;
+    faults.collect([&] {
+        json.write(
+            [&](std::ostream& file) { writeJson(findings, provenance, options, measured, file); });
+    });
+    faults.collect(
+        [&] { csv.write([&](std::ostream& file) { writeCsv(findings.rows.at("csv"), file); }); });
+    faults.collect([&] {
+        deliverPage({"Hard cases", kStabilityIntroduction, findings.verdict + ".", findings.holds,
+                     findings.sections, provenance},
+                    html, console);
+    });
+    faults.throwIfAny();
     return findings.holds.value_or(true) ? kExitOk : kExitCheckFailed;
 }
 

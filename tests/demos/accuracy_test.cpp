@@ -151,6 +151,20 @@ TEST(Accuracy, WritesAPageAndItsDataToAFolder) {
     EXPECT_TRUE(holds(page, "--quick, which measures less; seed 1."));
 }
 
+TEST(Accuracy, NamesEachFileThatCannotBeWrittenAndWritesTheOthers) {
+    const TemporaryFolder folder;
+    const std::string output = folder.file("report");
+    for (const char* name : {"/S1.json", "/advice.csv"}) {
+        std::filesystem::create_directories(output + name);
+    }
+    const Typed lost = runAccuracy({"--output", output, "--quick"});
+    EXPECT_EQ(lost.exitCode, kExitUsage);
+    EXPECT_EQ(lost.err, "hashphase: " + output + "/S1.json is a folder, not a file. " + output +
+                            "/advice.csv is a folder, not a file.\n");
+    EXPECT_EQ(nlohmann::json::parse(readFile(output + "/S2.json"))["experiment"], "S2");
+    EXPECT_TRUE(holds(readFile(output + "/accuracy.html"), "S1 Samples</h2>"));
+}
+
 TEST(Accuracy, NamesBrokenChecksOnTopOfThePage) {
     const TemporaryFolder folder;
     runAccuracy({"--output", folder.file("r")}, {experimentOf("B1", [](const Effort& /*effort*/) {

@@ -172,6 +172,17 @@ TEST_F(ResultFiles, GoStraightToPipesAndDevices) {
     }
 }
 
+TEST_F(ResultFiles, ThatCannotBeWrittenDoNotCostOthers) {
+    ResultFaults faults;
+    faults.throwIfAny();
+    faults.collect([] { throw InputError("The first."); });
+    ResultFile file(path_);
+    faults.collect([&file] { writeNew(file); });
+    faults.collect([] { throw InputError("The third."); });
+    EXPECT_EQ(readFile(path_), "new");
+    EXPECT_EQ(messageOf<InputError>([&faults] { faults.throwIfAny(); }), "The first. The third.");
+}
+
 // As the shell names them: `--json >(gzip >r.gz)`, `--json /dev/fd/3 3>r`.
 TEST_F(ResultFiles, GoStraightToOpenStreams) {
     std::array<int, 2> ends{};

@@ -323,23 +323,21 @@ std::string Run::keep(const std::string& fault) {
 
 // Each that can be written; returns what is to be said of the others.
 std::string Run::writeFiles() {
-    std::string faults;
+    ResultFaults faults;
     const auto write = [&faults](std::optional<ResultFile>& file, const std::string& path,
                                  const auto& content) {
-        try {
+        faults.collect([&] {
             std::error_code unknown;
             if (!std::filesystem::is_fifo(path, unknown)) {  // its reader takes a close as the end
                 file.emplace(path);
             }
             file->write(content);
-        } catch (const InputError& fault) {
-            faults += (faults.empty() ? "" : " ") + std::string(fault.what());
-        }
+        });
     };
     write(record, options.recordFile, [this](std::ostream& out) { out << session->log.text(); });
     write(json, options.jsonFile,
           [this](std::ostream& out) { writeNumbers(*session, framesPerSecond, out); });
-    return faults;
+    return faults.text();
 }
 
 // Says so, too. Who ends a script or a replay early wants no more of it; a time limit cuts it off.

@@ -125,6 +125,21 @@ TEST_F(Programs, LeaveTheLastGoodFilesOnAFullDisk) {
     expectIn(full.err, "hashphase: r.html cannot be written to its end; is the disk full?\n");
 }
 
+TEST_F(Programs, WriteTheOtherFilesIfOneCannotBeWritten) {
+    for (const char* words :
+         {"compare --objects 9 --frames 1", "paper --quick --objects 500 --time-limit 0.1",
+          "effects --objects 9 --frames 2", "stability --only H16 --broadphases hash"}) {
+        const ScriptOutput full = run("rm -f r.*\n$hashphase " + std::string(words) +
+                                      " --quiet --json /dev/full --csv r.csv --html r.html");
+        EXPECT_EQ(full.status, 2) << words << '\n' << full.err;
+        EXPECT_EQ(full.err,
+                  "hashphase: /dev/full cannot be written to its end; is the disk full?\n")
+            << words;
+        EXPECT_NE(text("r.csv").find('\n'), std::string::npos) << words;
+        EXPECT_TRUE(text("r.html").ends_with("</html>\n")) << words;
+    }
+}
+
 TEST_F(Programs, WriteResultsToStdoutBehindTheReport) {
     for (const std::string& where : {std::string(" | cat"), std::string(" >out; cat out")}) {
         const ScriptOutput both =
