@@ -150,7 +150,8 @@ private:
         }
         try {
             app.parse(std::move(arguments));
-            if (part.command.run(console) != kExitOk && !isInterrupted()) {
+            // A part that had no time to check anything ends like one that is broken, but says nothing that holds.
+            if (part.command.run(console) != kExitOk && !isInterrupted() && page.holds) {
                 page.holds = false;
             }
         } catch (const Interrupted&) {

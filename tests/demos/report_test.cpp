@@ -155,6 +155,20 @@ TEST(JoinedReport, DoesNotHoldWhereNothingWasChecked) {
     EXPECT_EQ(none.out.find("hold"), std::string::npos) << none.out;
 }
 
+TEST(JoinedReport, TellsPartsThatCheckedNothingFromBrokenOnesThoughBothFail) {
+    const auto failing = [](std::optional<bool> holds) {
+        std::vector<ReportPart> parts = twoParts(holds);
+        parts[1].command.run = [run = parts[1].command.run](Console& console) {
+            static_cast<void>(run(console));
+            return int{kExitCheckFailed};
+        };
+        return runReport(parts, {});
+    };
+    EXPECT_TRUE(holds(failing(std::nullopt).out,
+                      "Checked 1 of 2 parts: all checks hold; not checked: beta. "));
+    EXPECT_TRUE(holds(failing(true).out, "Checked 2 of 2 parts: checks of 1 are BROKEN. "));
+}
+
 TEST(JoinedReport, SaysDuringWhichPartOtherProgramsUsedTheProcessor) {
     std::vector<ReportPart> parts = twoParts();
     parts[1].command.run = [run = parts[1].command.run](Console& console) {
