@@ -307,7 +307,7 @@ FROM frames JOIN broadphases USING (name) ORDER BY broadphases.rowid, frame;
 
 /* {"rows": "settings"} */
 SELECT scene, description, from_file AS "fromFile?", objects, frames_asked AS frames,
-       warm_up AS warmUpFrames, seed, reference, time_limit AS timeLimitSeconds
+       warm_up AS warmUpFrames, seed || '' AS "seed{}", reference, time_limit AS timeLimitSeconds
 FROM run;
 
 /* {"rows": "end"} */

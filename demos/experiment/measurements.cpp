@@ -139,7 +139,8 @@ constexpr Function kAggregates[] = {{"median", 1, stepOfPercentile},
 void bind(sqlite3_stmt* statement, int place, const Value& value) {
     if (const double* number = std::get_if<double>(&value); number != nullptr) {
         // What is whole is told as such, so that texts made of it have no ".0".
-        const bool isWhole = std::abs(*number) < 1e15 && std::trunc(*number) == *number;
+        const bool isWhole = std::abs(*number) <= static_cast<double>(kMostExactWhole) &&
+                             std::trunc(*number) == *number;
         isWhole ? sqlite3_bind_int64(statement, place, static_cast<sqlite3_int64>(*number))
                 : sqlite3_bind_double(statement, place, *number);
     } else if (const auto* text = std::get_if<std::string>(&value); text != nullptr) {

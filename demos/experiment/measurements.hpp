@@ -18,6 +18,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,12 +34,21 @@ namespace hashphase::demos {
 template <class Type>
 concept Arithmetic = std::integral<Type> || std::floating_point<Type>;
 
-/// A value as it is written where it was measured: any number, a truth (1 or 0), a text, or nothing.
+/// A value as it is written where it was measured: any number, a truth (1 or 0), a text, or nothing. A whole number
+/// that no double holds, such as a seed of 64 bits, is a text of its digits.
 struct Datum {
     // NOLINTBEGIN(google-explicit-constructor): rows are written as lists of values.
     Datum() = default;
     template <Arithmetic Any>
-    Datum(Any number) : value(static_cast<double>(number)) {}
+    Datum(Any number) : value(static_cast<double>(number)) {
+        if constexpr (std::integral<Any> &&
+                      std::numeric_limits<Any>::digits > std::numeric_limits<double>::digits) {
+            if (std::cmp_greater(number, kMostExactWhole) ||
+                std::cmp_less(number, -kMostExactWhole)) {
+                value = std::to_string(number);
+            }
+        }
+    }
     Datum(std::string text) : value(std::move(text)) {}
     Datum(std::string_view text) : value(std::string(text)) {}
     Datum(const char* text) : value(std::string(text)) {}

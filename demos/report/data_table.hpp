@@ -5,6 +5,7 @@
 // table, charts draw it, CSV and JSON files hold it.
 
 #include <cstddef>
+#include <cstdint>
 #include <iosfwd>
 #include <string>
 #include <string_view>
@@ -16,6 +17,9 @@ namespace hashphase::demos {
 /// A number, a text, or nothing where nothing was measured. A number that is not finite counts as
 /// nothing.
 using Value = std::variant<std::monostate, double, std::string>;
+
+/// Up to it, every whole number is a double.
+inline constexpr std::int64_t kMostExactWhole = std::int64_t{1} << 53;
 
 struct DataColumn {
     std::string name;        // as in CSV and JSON: "missed", "frame_ms"

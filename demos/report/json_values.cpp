@@ -23,8 +23,8 @@ Json valueJson(const Value& value) {
     if (number == nullptr || !std::isfinite(*number)) {
         return nullptr;
     }
-    constexpr double exact = 9'007'199'254'740'992;  // up to it, every whole number is a double
-    return std::trunc(*number) == *number && std::abs(*number) <= exact
+    return std::trunc(*number) == *number &&
+                   std::abs(*number) <= static_cast<double>(kMostExactWhole)
                ? Json(static_cast<std::int64_t>(*number))
                : Json(*number);
 }

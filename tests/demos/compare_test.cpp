@@ -171,6 +171,17 @@ TEST(Compare, WritesJsonWithARowForEveryFrame) {
     EXPECT_TRUE(report["broadphases"][0]["frames"][7]["stepMs"].is_null());
 }
 
+TEST(Compare, ShowsEverySeedAsGiven) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("r.json");
+    for (const std::uint64_t seed : {std::uint64_t{9'007'199'254'740'993}, ~std::uint64_t{0}}) {
+        const Typed outcome = runCompare({"compare", "--objects", "9", "--frames", "1", "--seed",
+                                          std::to_string(seed), "--json", path});
+        EXPECT_TRUE(holds(outcome.out, ", seed " + std::to_string(seed) + "\n"));
+        EXPECT_EQ(nlohmann::json::parse(std::ifstream(path))["settings"]["seed"], seed);
+    }
+}
+
 TEST(Compare, WritesCsvWithALineForEveryFrameOfEveryBroadphase) {
     const TemporaryFolder folder;
     const std::string path = folder.file("r.csv");

@@ -59,6 +59,18 @@ TEST(Measurements, GiveBackWhatWasMeasured) {
     EXPECT_EQ(only(measured, "whole || '' FROM \"all\""), Value("1099511627776"));
 }
 
+TEST(Measurements, KeepAllDigitsOfWholeNumbers) {
+    Measurements measured;
+    const std::int64_t most = std::int64_t{1} << 53;
+    measured.add("all", {{"exact", most},
+                         {"more", most + 1},
+                         {"less", -most - 1},
+                         {"largest", std::numeric_limits<std::uint64_t>::max()}});
+    EXPECT_EQ(only(measured, "exact || ' ' || more || ' ' || less || ' ' || largest FROM \"all\""),
+              Value("9007199254740992 9007199254740993 -9007199254740993 18446744073709551615"));
+    EXPECT_EQ(only(measured, "exact FROM \"all\""), Value(static_cast<double>(most)));
+}
+
 TEST(Measurements, HaveEmptyTablesToo) {
     Measurements measured;
     measured.create("faults", {"frame", "what"});
