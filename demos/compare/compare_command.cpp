@@ -220,7 +220,7 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
         profileSteps(*profiled, settings, end, contestants, measured);
     }
     report.provenance.coresOfOthers = others.cores();
-    const bool isStopped = end.framesDone < frames || isInterrupted();
+    const bool isStopped = end.isStopped || isInterrupted();
     measured.add("run",
                  {{"scene", opened.name},
                   {"description", opened.description},

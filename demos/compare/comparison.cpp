@@ -159,7 +159,8 @@ ComparisonEnd runFrames(Trial& trial, const ComparisonSettings& settings,
     Progress progress(settings.err, settings.progress, "frame", frames * contestants.size());
 
     for (std::size_t frame = 0; frame < frames; ++frame) {
-        if (contestants.empty() || settings.limit.isOver()) {
+        end.isStopped = settings.limit.isOver();
+        if (end.isStopped || contestants.empty()) {
             break;
         }
         const auto tell = [&](std::size_t turn, std::string_view what) {

@@ -35,6 +35,7 @@ struct ComparisonSettings {
 struct ComparisonEnd {
     int warmUpFrames = 0;  // verified, but not timed
     int framesDone = 0;
+    bool isStopped = false;          // before its last frame, as the time limit was over
     std::size_t objectsRemoved = 0;  // at last, of each
 };
 

@@ -286,6 +286,18 @@ TEST_P(CompareSlowToFill, IsLeftOutAndTheOthersAreCompared) {
 
 INSTANTIATE_TEST_SUITE_P(BoxesAndWorlds, CompareSlowToFill, testing::Values("uniform", "pile"));
 
+TEST(Compare, DoesNotBlameTheTimeLimitIfAllBroadphasesAreLeftOut) {
+    const TemporaryFolder folder;
+    const std::string file = folder.file("r.json");
+    const std::array kinds{kindOf<SlowToFill>(true, "slow")};
+    const Typed outcome =
+        runCompare({"compare", "--objects", "4000", "--time-limit", "4", "--json", file}, kinds);
+    EXPECT_EQ(outcome.exitCode, kExitCheckFailed) << outcome.out;
+    EXPECT_TRUE(holds(outcome.out, "\nslow: left out, creating 4,000 "));
+    EXPECT_FALSE(holds(outcome.out, "The time limit of"));
+    EXPECT_EQ(nlohmann::json::parse(std::ifstream(file))["verdict"]["timeLimitHit"], false);
+}
+
 TEST(Compare, FailsWhenOursIsNotFilledInTime) {
     const std::array kinds{kindOf<SlowToFill>(true, "slow"), broadphaseKinds()[1]};
     const Typed outcome =
