@@ -310,8 +310,10 @@ SELECT scene, description, from_file AS "fromFile?", objects, frames_asked AS fr
        warm_up AS warmUpFrames, seed || '' AS "seed{}", reference, time_limit AS timeLimitSeconds
 FROM run;
 
+-- Of each broadphase that has a time for it.
 /* {"rows": "end"} */
-SELECT text, exact AS "exact?", frames_done AS framesDone, removed AS objectsRemoved,
+SELECT text, exact AS "exact?", frames_done AS framesDone,
+       iif(EXISTS (SELECT 1 FROM broadphases WHERE remove_ms IS NOT NULL), removed, 0) AS objectsRemoved,
        stopped IS NOT NULL AND NOT interrupted AS "timeLimitHit?", interrupted AS "interrupted?"
 FROM verdict, exactness, run;
 

@@ -230,7 +230,7 @@ int runCompare(const CompareOptions& options, std::span<const BroadphaseKind> ki
                   {"frames_asked", frames},
                   {"warm_up", end.warmUpFrames},
                   {"frames_done", end.framesDone},
-                  {"removed", end.objectsRemoved},
+                  {"removed", end.objectsToRemove},
                   {"seed", options.sceneSeed()},
                   {"reference", options.reference == ReferenceMethod::kBrute ? "brute" : "sweep"},
                   {"time_limit", options.timeLimit},

@@ -154,7 +154,7 @@ ComparisonEnd runFrames(Trial& trial, const ComparisonSettings& settings,
     const std::vector<Contestant*> contestants = filled(all);
     ComparisonEnd end;
     end.warmUpFrames = std::min(kMostWarmUpFrames, settings.frames / 4);
-    end.objectsRemoved = std::min(kObjectsToRemove, (trial.facts.objects + 1) / 2);
+    end.objectsToRemove = std::min(kObjectsToRemove, (trial.facts.objects + 1) / 2);
     const auto frames = static_cast<std::size_t>(settings.frames);
     Progress progress(settings.err, settings.progress, "frame", frames * contestants.size());
 
@@ -191,7 +191,7 @@ ComparisonEnd runFrames(Trial& trial, const ComparisonSettings& settings,
         }
         end.framesDone = static_cast<int>(frame) + 1;
     }
-    recordEnd(trial, settings, end.objectsRemoved, all, measured);
+    recordEnd(trial, settings, end.objectsToRemove, all, measured);
     return end;
 }
 

@@ -35,8 +35,8 @@ struct ComparisonSettings {
 struct ComparisonEnd {
     int warmUpFrames = 0;  // verified, but not timed
     int framesDone = 0;
-    bool isStopped = false;          // before its last frame, as the time limit was over
-    std::size_t objectsRemoved = 0;  // at last, of each
+    bool isStopped = false;           // before its last frame, as the time limit was over
+    std::size_t objectsToRemove = 0;  // at last, of each
 };
 
 /// Fills all the broadphases, within half of the time that is left, of which each has an even share;

@@ -182,6 +182,21 @@ TEST(Compare, ShowsEverySeedAsGiven) {
     }
 }
 
+TEST(Compare, CountsOnlyTheObjectsThatItHasRemoved) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("r.json");
+    const auto removed = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> all{"compare", "--objects", "100", "--broadphases",
+                                     "hash",    "--json",    path};
+        all.insert(all.end(), options.begin(), options.end());
+        runCompare(all);
+        return nlohmann::json::parse(std::ifstream(path))["verdict"]["objectsRemoved"];
+    };
+    EXPECT_EQ(removed({"--frames", "1"}), 50);
+    EXPECT_EQ(removed({"--frames", "1", "--scene", "pile"}), 0) << "of a world";
+    EXPECT_EQ(removed({"--frames", "1000000", "--time-limit", "0.3"}), 0) << "no time was left";
+}
+
 TEST(Compare, WritesCsvWithALineForEveryFrameOfEveryBroadphase) {
     const TemporaryFolder folder;
     const std::string path = folder.file("r.csv");
