@@ -106,6 +106,17 @@ TEST(EffectsCommand, RunsAFileThatItHasShown) {
     EXPECT_TRUE(has(output.out, "200 bodies, motion, pairs, response, sweep"));
 }
 
+TEST(EffectsCommand, RunsASceneWithoutEffectsOnce) {
+    const TemporaryFolder folder;
+    const std::string csv = folder.file("r.csv");
+    const Typed output = runEffectsCommand({"--file", folder.write("bare.json", "{}"), "--objects",
+                                            "50", "--frames", "2", "--csv", csv, "--quiet"});
+    EXPECT_EQ(output.exitCode, kExitOk) << output.err;
+    const std::string rows = readFile(csv);
+    EXPECT_EQ(std::ranges::count(rows, '\n'), 2) << rows;
+    EXPECT_EQ(rows.find(",frame_ms,"), rows.rfind(",frame_ms,")) << rows;
+}
+
 TEST(EffectsCommand, HasFewerBodiesAndFramesInAQuickRunUnlessTheyAreGiven) {
     const std::string quick = runEffectsCommand({"--quick", "--show"}).out;
     EXPECT_TRUE(has(quick, "\"objects\": 2000")) << quick;
