@@ -2,6 +2,7 @@
 #include <demos/console/options.hpp>
 
 #include <demos/console/format.hpp>
+#include <demos/console/result_file.hpp>
 
 #include <charconv>
 #include <filesystem>
@@ -80,7 +81,22 @@ bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) 
            std::filesystem::weakly_canonical(b, error);
 }
 
+// Of a file whose bytes first go to the other's path.
+std::string partialClashOf(const CLI::Option& written, const CLI::Option& other) {
+    const auto path = other.as<std::string>();
+    if (!writes(written) || !isSameFile(ResultFile::partialOf(written.as<std::string>()), path)) {
+        return {};
+    }
+    return written.get_name() + " would first be written to " + path + ", which " +
+           other.get_name() + (writes(other) ? " writes, too." : " reads.");
+}
+
 std::string clashOf(const CLI::Option& a, const CLI::Option& b) {
+    for (const auto& [written, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+        if (std::string fault = partialClashOf(*written, *other); !fault.empty()) {
+            return fault;
+        }
+    }
     const auto path = a.as<std::string>();
     if (!(writes(a) || writes(b)) || !isSameFile(path, b.as<std::string>())) {
         return {};

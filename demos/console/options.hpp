@@ -44,7 +44,7 @@ CLI::Option* addFolderToWrite(CLI::App& app, const std::string& name, std::strin
 void checkValues(CLI::App& app);
 
 /// What is wrong with the files of the options that were given: two of them would be written to the
-/// same file, or one over what another one reads. Empty where nothing is.
+/// same file, or one over what another one reads, if only until it is whole. Empty where nothing is.
 [[nodiscard]] std::string pathClash(const CLI::App& app);
 
 /// The items with these names, in their own order; all where none is named. Throws InputError for a name that

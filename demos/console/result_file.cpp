@@ -44,6 +44,12 @@ ResultFile::~ResultFile() {
     }
 }
 
+std::filesystem::path ResultFile::partialOf(const std::filesystem::path& path) {
+    std::filesystem::path partial = behindLinks(path);
+    partial += ".partial";
+    return partial;
+}
+
 void ResultFile::open() {
     target_ = behindLinks(path_);
     std::error_code ignored;
@@ -70,8 +76,7 @@ void ResultFile::openPartial(const std::filesystem::file_status& older) {
         }
         file_.close();
     }
-    partial_ = target_;
-    partial_ += ".partial";
+    partial_ = partialOf(target_);
     file_.open(partial_, std::ios::binary);  // the same bytes on any system
     if (!file_) {
         partial_.clear();

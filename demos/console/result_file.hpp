@@ -29,6 +29,9 @@ public:
 
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
+    /// `<path>.partial`, of what a symbolic link at the path leads to.
+    [[nodiscard]] static std::filesystem::path partialOf(const std::filesystem::path& path);
+
     /// Takes the bytes of the file.
     [[nodiscard]] std::ostream& stream() noexcept { return *stream_; }
 

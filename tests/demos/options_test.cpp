@@ -140,6 +140,17 @@ TEST(Options, AreRefusedWhenTheirFilesWouldOverwriteEachOther) {
     const std::string report = folder.file("report");
     EXPECT_EQ(refusalOf({"compare", "--json", report, "--html", folder.file(".") + "/report"}),
               "hashphase: --json and --html would both be written to " + report + ".\n");
+    const std::string partial = folder.write("b.partial", "0 0 0 1 1 1\n");
+    std::filesystem::create_symlink("b", folder.file("to b"));
+    for (const std::string& name : {folder.file("b"), folder.file("to b")}) {
+        EXPECT_EQ(
+            refusalOf({"compare", "--file", partial, "--json", name}),
+            "hashphase: --json would first be written to " + partial + ", which --file reads.\n");
+    }
+    EXPECT_EQ(refusalOf({"compare", "--csv", report + ".partial", "--json", report}),
+              "hashphase: --json would first be written to " + report +
+                  ".partial, which --csv writes, too.\n");
+    EXPECT_EQ(readFile(partial), "0 0 0 1 1 1\n");
     std::filesystem::create_symlink(boxes, folder.file("link"));
     EXPECT_NE(refusalOf({"compare", "--file", folder.file("link"), "--csv", boxes}), "");
     EXPECT_EQ(typed({"compare", "--objects", "10", "--frames", "1", "--json", "/dev/null", "--csv",
