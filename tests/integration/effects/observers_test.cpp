@@ -11,6 +11,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <ostream>
 #include <set>
 #include <vector>
 
@@ -49,8 +50,15 @@ private:
     std::vector<ProxyId> ids_;
 };
 
+/// Printed by its settings, not by its bytes, some of which are padding.
+struct LateEffect : ProximityEffect {
+    friend void PrintTo(const LateEffect& effect, std::ostream* out) {
+        *out << "turns " << effect.turns << ", farFrames " << effect.farFrames;
+    }
+};
+
 /// Far agents look in each nth frame, or in each nth of their turns; the others always, or in turn.
-class LateAgents : public testing::TestWithParam<ProximityEffect> {};
+class LateAgents : public testing::TestWithParam<LateEffect> {};
 
 TEST_P(LateAgents, LookWhenTheyAreToAndKeepTheirColourUntilThen) {
     const ProximityEffect& effect = GetParam();
@@ -99,10 +107,9 @@ TEST_P(LateAgents, LookWhenTheyAreToAndKeepTheirColourUntilThen) {
 
 INSTANTIATE_TEST_SUITE_P(
     Observers, LateAgents,
-    testing::Values(ProximityEffect{.radius = 5, .interestRadius = 15, .farFrames = 4},
-                    ProximityEffect{.radius = 5, .turns = 4},
-                    ProximityEffect{
-                        .radius = 5, .interestRadius = 15, .farFrames = 2, .turns = 3}));
+    testing::Values(LateEffect{{.radius = 5, .interestRadius = 15, .farFrames = 4}},
+                    LateEffect{{.radius = 5, .turns = 4}},
+                    LateEffect{{.radius = 5, .interestRadius = 15, .farFrames = 2, .turns = 3}}));
 
 TEST(Observers, LookIntoFarZonesEachNthFrameAndTellAllThen) {
     SceneEffects effects;
