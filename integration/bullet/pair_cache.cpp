@@ -226,19 +226,14 @@ void PairCache::processAllOverlappingPairs(btOverlapCallback* callback, btDispat
     prepareWholeArray();
     const Processing processing(processDepth_);
     for (int i = 0; i < pairs_.size();) {
-        btBroadphaseProxy* const proxy0 = pairs_[i].m_pProxy0;
-        btBroadphaseProxy* const proxy1 = pairs_[i].m_pProxy1;
-        const int countBefore = pairs_.size();
+        const std::uint64_t ids = ids_.keys()[static_cast<std::size_t>(i)];
         if (callback->processOverlap(pairs_[i])) {
-            removeOverlappingPair(proxy0, proxy1, dispatcher);
+            remove(ids, dispatcher, Freeing::now, Remover::other);
             continue;
         }
-        // Where the callback has removed the pair itself, another one has taken its place. Only a
-        // smaller count tells that from a callback that puts the pair back, over and over.
-        const bool isReplaced =
-            pairs_.size() < countBefore &&
-            (i >= pairs_.size() || pairs_[i].m_pProxy0 != proxy0 || pairs_[i].m_pProxy1 != proxy1);
-        i += isReplaced ? 0 : 1;
+        // Where the callback has removed the pair itself, another one has taken its place. That the
+        // pair is gone tells that from a callback that puts the pair back, over and over.
+        i += ids_.find(ids) == kNone ? 0 : 1;
     }
 }
 

@@ -233,6 +233,23 @@ TEST(PairCache, ToleratesChangesByTheCallback) {
     }
 }
 
+TEST(PairCache, ShowsThePairThatTakesThePlaceOfOneThatTheCallbackReplacedByAnother) {
+    CacheSide side;
+    for (int i = 0; i < 3; ++i) {
+        side.add(10 * i, 10 * i + 1);
+    }
+    ProcessBy replaceFirst([&](btBroadphasePair&) {
+        if (replaceFirst.shown.size() == 1) {
+            side.remove(0, 1);
+            side.add(50, 51);
+        }
+        return false;
+    });
+    side.cache.processAllOverlappingPairs(&replaceFirst, nullptr);
+    EXPECT_EQ(inOrder(replaceFirst.shown),
+              (std::vector<Uids>{{0, 1}, {10, 11}, {20, 21}, {50, 51}}));
+}
+
 // As a contact-ended callback does that makes or destroys a proxy.
 TEST(PairCache, RenewsPairsThoughFreeingAnAlgorithmChangesTheCache) {
     struct Change {
