@@ -198,6 +198,7 @@ void PairCache::closeVacant() noexcept {
 // As vacate(). Where there is no memory to retire pairs, they stay.
 void PairCache::vacateInParts(std::span<const BulletProxyPair> died, btDispatcher* dispatcher,
                               ParallelFor parallelFor) {
+    ids_.reserve(ids_.size() + 1);  // so that what is put back takes no memory
     std::atomic<bool> mustRetire{false};
     const auto noteIfToRetire = [&](std::uint32_t index) {
         if (dispatcher != nullptr && index != kNone &&

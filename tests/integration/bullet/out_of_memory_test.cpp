@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace hashphase::test {
@@ -196,17 +197,18 @@ TEST(BulletOutOfMemory, TearsNothing) {
 
 /// Thousands of births and deaths at once.
 struct ScarceBatch : CacheSide {
-    explicit ScarceBatch(PairOrder order) : CacheSide(order) {
+    explicit ScarceBatch(PairOrder order, std::size_t deathCount = 3570) : CacheSide(order) {
         std::vector<Uids> all;
         for (int a = 0; a < int(kProxies); ++a) {
             for (int b = a + 1; b < int(kProxies); ++b) {
                 all.emplace_back(a, b);
             }
         }
-        const auto middle = all.begin() + std::ptrdiff_t(all.size() / 2);
+        const auto middle = all.begin() + std::ptrdiff_t(deathCount);
         died = pairs({all.begin(), middle});
         born = pairs({middle, all.end()});
         cache.update({}, died, &dispatcher);
+        cache.releaseUnusedMemory();
         giveAlgorithms();
         freed.reserve(all.size());
     }
@@ -221,9 +223,14 @@ TEST(BulletOutOfMemory, ABatchOnThreadsHasRemovedSomeAndAddedNoneAndIsRepeated) 
     if (!kCountsAllocations) {
         GTEST_SKIP() << "this program has another `new`";
     }
-    for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
+    // A cache of 9 * 2^n pairs has no room for another.
+    for (const auto& [order, deathCount] :
+         {std::pair{PairOrder::arrival, 3570U}, std::pair{PairOrder::canonical, 3570U},
+          std::pair{PairOrder::arrival, 9U * 512}}) {
         const std::size_t failures = runOutOfMemory(
-            [&] { return std::make_unique<ScarceBatch>(order); },
+            [order = order, deathCount = deathCount] {
+                return std::make_unique<ScarceBatch>(order, deathCount);
+            },
             [](ScarceBatch& batch) { batch.run(); },
             [](ScarceBatch& batch, std::size_t) {
                 ASSERT_EQ(batch.cache.validate(), "");
