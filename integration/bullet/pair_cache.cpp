@@ -2,11 +2,9 @@
 #include <integration/bullet/pair_cache.hpp>
 
 #include <broadphase/core/caught.hpp>
-#include <broadphase/core/ensure_capacity.hpp>
 #include <broadphase/core/limits.hpp>
 #include <integration/bullet/detail/cache_watch.hpp>
 
-#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btDispatcher.h>
 
 #include <algorithm>
@@ -145,36 +143,6 @@ PairCache::Freeing PairCache::freeingNow() const noexcept {
     return inTurn ? Freeing::inTurn : Freeing::now;
 }
 
-// Callbacks come when everything is in order again, and get a copy, so that they may change the
-// cache.
-void* PairCache::remove(std::uint64_t ids, btDispatcher* dispatcher, Freeing freeing,
-                        Remover remover) {
-    checkMayChange();
-    if (freeing == Freeing::inTurn) {
-        detail::ensureCapacity(retired_, retired_.size() + 1);
-    }
-    const std::uint32_t index = ids_.vacate(ids);
-    if (index == kNone) {
-        return nullptr;
-    }
-    btBroadphasePair removed = pairs_[static_cast<int>(index)];
-    unchainPair(index, ids);
-    fill(index);
-    if (remover == Remover::other) {
-        noteTakenOut(removed);
-    }
-    if (freeing == Freeing::now) {
-        cleanOverlappingPair(removed, dispatcher);
-    } else {
-        retire(removed, ids, dispatcher);
-    }
-    if (ghosts_ != nullptr) {
-        const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
-        ghosts_->removeOverlappingPair(removed.m_pProxy0, removed.m_pProxy1, dispatcher);
-    }
-    return removed.m_internalInfo1;
-}
-
 void PairCache::noteTakenOut(const btBroadphasePair& pair) const noexcept {
     if (watcher_ != nullptr) {
         watcher_->note(pair);
@@ -208,16 +176,6 @@ void PairCache::fill(std::uint32_t index) noexcept {
 btBroadphasePair* PairCache::findPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1) {
     const std::uint32_t index = ids_.find(idsOf(*proxy0, *proxy1));
     return index == kNone ? nullptr : &pairs_[static_cast<int>(index)];
-}
-
-void PairCache::cleanOverlappingPair(btBroadphasePair& pair, btDispatcher* dispatcher) {
-    if (pair.m_algorithm == nullptr || dispatcher == nullptr) {
-        return;
-    }
-    const detail::QueryScope scope(this, detail::QueryScope::Changes::allowed);
-    btCollisionAlgorithm* algorithm = std::exchange(pair.m_algorithm, nullptr);
-    algorithm->~btCollisionAlgorithm();
-    dispatcher->freeCollisionAlgorithm(algorithm);
 }
 
 // --- All pairs -----------------------------------------------------------------------------------
@@ -286,30 +244,6 @@ void PairCache::prepareWholeArray() {
     if (order_ == PairOrder::canonical && processDepth_ == 0) {
         freeRetired();
         sortOverlappingPairs(nullptr);
-    }
-}
-
-// The order in which algorithms are freed decides how the dispatcher's manifolds are numbered, and
-// through the order of contacts in the solver every bit of what follows.
-void PairCache::freeRetired() {
-    std::sort(retired_.begin(), retired_.end(),
-              [](const Retired& a, const Retired& b) { return a.note < b.note; });
-    freeRetiredAsListed();
-}
-
-void PairCache::freeRetiredAsListed() {
-    if (retired_.empty()) {
-        return;
-    }
-    std::vector<Retired> retired = std::move(retired_);
-    retired_.clear();
-    for (Retired& each : retired) {
-        cleanOverlappingPair(each.pair, each.dispatcher);
-    }
-    // What freeing an algorithm has removed in its turn waits for the next time.
-    if (retired_.empty()) {
-        retired.clear();
-        retired_ = std::move(retired);
     }
 }
 

@@ -57,7 +57,7 @@ struct CacheWatcher;
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// The order of the pairs in the array.
-enum class PairOrder {
+enum class PairOrder : std::uint8_t {
     /// New pairs are appended. The last pair moves to the place of a removed pair, as in Bullet's cache (for batches,
     /// see update()). Equal calls on an empty cache give an equal order. Setting boxes back to an earlier frame
     /// restores the pairs, but not their order. Cost: none.
@@ -119,7 +119,7 @@ public:
     /// broadphase reuses unique ids, the cache works, but equal sets of objects may get different orders. To prevent
     /// this, pass another key. Asserted: `key` is not null.
     explicit PairCache(PairOrder order = PairOrder::arrival, ProxyKey key = &uniqueId)
-        : order_(order), key_(key) {
+        : key_(key), order_(order) {
         HASHPHASE_ASSERT(key != nullptr,
                          "PairCache: the key is null. Pass a function, or omit it.");
     }
@@ -145,7 +145,7 @@ public:
     /// As addOverlappingPair(), but accepts every pair: does not call needsBroadphaseCollision().
     btBroadphasePair* addAcceptedPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1);
 
-    /// Removes the pair, frees its algorithm (see Removal) and calls the ghost callback. Returns the pair's
+    /// Removes the pair, calls the ghost callback, then frees the algorithm (see Removal). Returns the pair's
     /// m_internalInfo1, or NULL if the pair is missing. Cost: O(1).
     void* removeOverlappingPair(btBroadphaseProxy* proxy0, btBroadphaseProxy* proxy1,
                                 btDispatcher* dispatcher) override;
@@ -320,8 +320,8 @@ private:
     };
 
     enum class Freeing { now, inTurn };
-
     class Processing;
+    class Leaving;
 
     static constexpr std::uint32_t kNone = detail::FlatSet::kNone;
     static constexpr std::uint64_t kLowerHalf = 0xffffffffU;  // mask for the higher unique id
@@ -405,10 +405,10 @@ private:
     void sort();
     void freeRetired();
     void freeRetiredAsListed();
+    void freeLeavingOf(const btBroadphaseProxy& proxy);
     [[nodiscard]] bool areChainsSound() const;
 
     friend class detail::BroadphaseImage;
-    PairOrder order_;
     ProxyKey key_;
     btOverlapFilterCallback* filter_ = nullptr;
     btOverlappingPairCallback* ghosts_ = nullptr;
@@ -419,10 +419,12 @@ private:
     detail::RunMap firstEdge_;      // unique id -> first edge of the proxy's chain
     std::size_t pairsScanned_ = 0;  // unchained pairs scanned since the last chaining
     std::uint64_t pairsVisited_ = 0;
+    PairOrder order_;
     bool isSorted_ = true;
     int processDepth_ = 0;  // number of nested processAllOverlappingPairs() calls
 
     std::vector<Retired> retired_;
+    Leaving* leaving_ = nullptr;  // pairs that are being freed
 
     detail::CacheWatcher* watcher_ = nullptr;
 

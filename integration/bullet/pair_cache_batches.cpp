@@ -278,6 +278,9 @@ void PairCache::removePairsOf(std::span<btBroadphaseProxy* const> proxies, btDis
         }
         return;
     }
+    for (const btBroadphaseProxy* const proxy : proxies) {
+        freeLeavingOf(*proxy);
+    }
     freeRetired();
     dropChainsIfMany(proxies.size());
     chainIfWorth();

@@ -125,6 +125,7 @@ void PairCache::noteUnchained(std::uint32_t id, std::vector<PairSortKey>& notes)
 
 // Noted down, for callbacks may change the cache. In canonical order, or in that of the array.
 std::vector<PairCache::PairSortKey> PairCache::notesOf(const btBroadphaseProxy& proxy) {
+    freeLeavingOf(proxy);
     freeRetired();
     chainIfWorth();
     std::vector<PairSortKey> notes = std::move(scratch_);

@@ -6,7 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace hashphase::test {
@@ -124,6 +127,54 @@ TEST(GhostLists, HoldWhatIsThereAndNothingElseInEveryStep) {
 // The test above can fail.
 TEST(GhostLists, KeepWhatHasLeftUnderBtDbvtBroadphase) {
     EXPECT_GT(lifeOver(makeBroadphase<btDbvtBroadphase>(), true).stale, 100U);
+}
+
+// A contact-ended callback may remove a body of the pair that ends: a ghost in that pair is told of its end.
+TEST(GhostObject, HearOfTheEndOfAPairWhoseContactsEndAndRemoveItsBody) {
+    static btCollisionObject* victim;
+    static ObjectWorld* where;
+    using End = std::function<void(ObjectWorld&, btCollisionObject&)>;
+    const std::array<End, 3> ends{
+        [](ObjectWorld& scene, btCollisionObject& body) {
+            scene.move(body, {50, 0, 0});
+            scene.detect();
+        },
+        [](ObjectWorld& scene, btCollisionObject& body) {
+            btCollisionObject* const ghost = scene.world.getCollisionObjectArray()[0];
+            scene.broadphase.ignorePair(ghost->getBroadphaseHandle(), body.getBroadphaseHandle(),
+                                        &scene.dispatcher);
+            scene.detect();
+        },
+        [](ObjectWorld& scene, btCollisionObject& body) {
+            body.getBroadphaseHandle()->m_collisionFilterMask = 0;
+            scene.broadphase.refilter(body.getBroadphaseHandle(), &scene.dispatcher);
+            scene.detect();
+        }};
+    for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
+        for (const End& end : ends) {
+            btGhostObject ghost;
+            btCollisionObject body;
+            ObjectWorld scene({}, order);
+            scene.add(ghost, scene.box, {0, 0, 0});
+            scene.add(body, scene.box, {btScalar(1.5), 0, 0});
+            scene.detect();
+            ASSERT_EQ(ghost.getNumOverlappingObjects(), 1);
+            where = &scene;
+            victim = &body;
+            gContactEndedCallback = [](btPersistentManifold* const& /*manifold*/) {
+                if (victim != nullptr) {
+                    where->world.removeCollisionObject(std::exchange(victim, nullptr));
+                }
+            };
+            end(scene, body);
+            gContactEndedCallback = nullptr;
+            EXPECT_EQ(victim, nullptr);
+            EXPECT_EQ(ghost.getNumOverlappingObjects(), 0);
+            EXPECT_EQ(scene.pairCount(), 0);
+            scene.detect();
+            EXPECT_EQ(scene.broadphase.validate(), "");
+        }
+    }
 }
 
 }  // namespace

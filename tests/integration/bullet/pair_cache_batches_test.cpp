@@ -158,6 +158,7 @@ TEST(PairCacheBatch, IsWholeWhereTheDispatcherThrows) {
     CacheSide side;
     side.addBand();
     side.giveAlgorithms();
+    const std::size_t count = side.list().size();
     Throwing throwing(&side.configuration);
     const std::array gone{side.proxy(3), side.proxy(4), side.proxy(5), side.proxy(6),
                           side.proxy(90)};
@@ -166,6 +167,7 @@ TEST(PairCacheBatch, IsWholeWhereTheDispatcherThrows) {
     EXPECT_EQ(side.cache.validate(), "");
     const std::vector<Uids> left = side.list();
     EXPECT_GT(left.size(), 300U);
+    EXPECT_EQ(side.freed.size(), count - left.size()) << "no algorithm is lost";
     for (const auto& [a, b] : left) {
         EXPECT_FALSE((a >= 3 && a <= 6) || (b >= 3 && b <= 6) || a == 90 || b == 90)
             << a << ", " << b;

@@ -10,6 +10,7 @@
 #include <array>
 #include <random>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -293,6 +294,46 @@ TEST(PairCache, RenewsPairsThoughFreeingAnAlgorithmChangesTheCache) {
             EXPECT_EQ(side.cache.validate(), "");
         }
     }
+}
+
+// A program may delete what it has taken out, so contacts that name it are freed before.
+TEST(PairCache, FreesAProxysAlgorithmsBeforeItIsGoneThoughACallbackTakesItOut) {
+    for (const PairOrder order : {PairOrder::arrival, PairOrder::canonical}) {
+        for (const bool isOnFreed : {false, true}) {
+            CacheSide side(order);
+            for (const int other : {1, 2, 3}) {
+                side.add(0, other);
+            }
+            side.giveAlgorithms();
+            const auto takeOut = [&, isDone = false](auto&&... /*pair*/) mutable {
+                if (!std::exchange(isDone, true)) {
+                    side.cache.removeOverlappingPairsContainingProxy(side.proxy(0),
+                                                                     &side.dispatcher);
+                    EXPECT_EQ(side.freed.size(), 3U);
+                }
+            };
+            if (isOnFreed) {
+                side.onFreed = takeOut;
+            } else {
+                side.cache.setInternalGhostPairCallback(&side.ghosts);
+                side.ghosts.onDeath = takeOut;
+            }
+            side.update({{0, 1}, {0, 2}}, {});
+            EXPECT_EQ(side.list(), std::vector<Uids>{});
+            EXPECT_EQ(inOrder(side.freed), (std::vector<Uids>{{0, 1}, {0, 2}, {0, 3}}));
+        }
+    }
+}
+
+TEST(PairCache, FreesAnAlgorithmOfWhoseEndAGhostCallbackThrows) {
+    CacheSide side;
+    side.add(0, 1);
+    side.giveAlgorithms();
+    side.cache.setInternalGhostPairCallback(&side.ghosts);
+    side.ghosts.onDeath = [](auto*, auto*) { throw std::runtime_error("A ghost fails."); };
+    EXPECT_THROW(side.remove(0, 1), std::runtime_error);
+    EXPECT_EQ(side.freed.size(), 1U);
+    EXPECT_EQ(side.cache.validate(), "");
 }
 
 // --- Order ---------------------------------------------------------------------------------------
