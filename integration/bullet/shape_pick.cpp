@@ -15,17 +15,24 @@ struct ClosestOf final : btCollisionWorld::RayResultCallback {
     explicit ClosestOf(ProxyFilter filter) : filter_(filter) {}
 
     bool needsCollision(btBroadphaseProxy* proxy) const override {
-        return filter_(SpatialHashBroadphase::idOf(proxy));
+        castAt_ = SpatialHashBroadphase::idOf(proxy);
+        return filter_(castAt_);
     }
     btScalar addSingleResult(btCollisionWorld::LocalRayResult& result,
                              bool /*normalInWorldSpace*/) override {
         m_collisionObject = result.m_collisionObject;
         m_closestHitFraction = result.m_hitFraction;
+        id_ = castAt_;
         return m_closestHitFraction;
     }
 
+    /// Of the object that was hit: the object itself may know another proxy, or none.
+    [[nodiscard]] ProxyId id() const noexcept { return id_; }
+
 private:
     ProxyFilter filter_;
+    mutable ProxyId castAt_;  // was asked about last, and so is cast at next
+    ProxyId id_;
 };
 
 btVector3 endOf(const RayRegion<btScalar>& ray) {
@@ -55,8 +62,7 @@ KeyedProxy<btScalar> closestShape(const SpatialHashBroadphase& broadphase,
     if (!closest.hasHit()) {
         return {};
     }
-    return {closest.m_closestHitFraction,
-            SpatialHashBroadphase::idOf(closest.m_collisionObject->getBroadphaseHandle())};
+    return {closest.m_closestHitFraction, closest.id()};
 }
 
 void castAtShape(const SpatialHashBroadphase& broadphase, ProxyId id, const btVector3& from,

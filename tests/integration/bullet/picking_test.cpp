@@ -168,5 +168,33 @@ TEST_F(WorldPicking, FindsNoShapesAlongEmptyRays) {
     EXPECT_TRUE(picked.empty());
 }
 
+// Proxies that are made by hand, and whose objects are in another broadphase, or in none.
+TEST(ShapePicking, FindsObjectsOfProxiesThatTheyDoNotKnow) {
+    btBoxShape block({1, 1, 1});
+    btCollisionObject near;
+    btCollisionObject far;
+    DynamicsWorld world;
+    SpatialHashBroadphase second;
+    std::vector<btBroadphaseProxy*> proxies;
+    for (btCollisionObject* const object : {&far, &near}) {
+        object->setCollisionShape(&block);
+        object->getWorldTransform().setOrigin(
+            {object == &near ? btScalar(10) : btScalar(20), 0, 0});
+        btVector3 low;
+        btVector3 high;
+        block.getAabb(object->getWorldTransform(), low, high);
+        proxies.push_back(second.createProxy(low, high, 0, object, 1, -1, nullptr));
+    }
+    world.world().addCollisionObject(
+        &near);  // has the lowest id there, which is that of `far` here
+    const RayRegion<btScalar> ray({0, 0, 0}, {30, 0, 0});
+    for (btBroadphaseProxy* const nearest : {proxies[1], proxies[0]}) {
+        EXPECT_EQ(closestShape(second, ray).id, SpatialHashBroadphase::idOf(nearest));
+        second.destroyProxy(nearest, nullptr);
+    }
+    EXPECT_TRUE(closestShape(second, ray).id.isNull());
+    world.world().removeCollisionObject(&near);
+}
+
 }  // namespace
 }  // namespace hashphase::test
