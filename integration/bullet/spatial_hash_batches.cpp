@@ -200,7 +200,7 @@ void SpatialHashBroadphase::setAabbs(std::span<btBroadphaseProxy* const> proxies
     HASHPHASE_ASSERT(
         proxies.size() == aabbMins.size() && proxies.size() == aabbMaxs.size(),
         "setAabbs(): proxies and boxes have different lengths. Pass one box for each proxy.");
-    const bool mayCallBack = ghostCount() > 0 || config_.eagerGroups != 0;
+    const bool mayCallBack = mayHaveGhosts() || config_.eagerGroups != 0;
     std::vector<int> ids;
     if (mayCallBack) {
         ids.swap(grid_.store().scratchOfMoves().ids);  // callbacks may set others

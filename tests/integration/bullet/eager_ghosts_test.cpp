@@ -256,6 +256,30 @@ TEST(EagerGhosts, LeaveClientsAloneThatBulletDoesNotTakeForObjects) {
     createAndMove(others, nobody, -1, true);
 }
 
+// A ghost that was added before there was a callback is known as one when its box is set.
+TEST(EagerGhosts, MayDestroyOthersOfABatchThoughTheyWereNotKnownBefore) {
+    btGhostObject ghost;
+    std::array<btCollisionObject, 2> objects;
+    PairJournal journal;
+    ObjectWorld scene;
+    scene.watchBy(nullptr);
+    scene.add(ghost, scene.box, {50, 0, 0});
+    scene.add(objects[0], scene.box, {0, 0, 0});
+    scene.add(objects[1], scene.box, {20, 0, 0});
+    scene.watchBy(&journal);
+    journal.onBirth = [&](auto*, auto*) { scene.world.removeCollisionObject(&objects[1]); };
+    const std::array batch{ghost.getBroadphaseHandle(), objects[1].getBroadphaseHandle()};
+    const std::array<btVector3, 2> lows{btVector3(-1, -1, -1), btVector3(90, 0, 0)};
+    const std::array<btVector3, 2> highs{btVector3(1, 1, 1), btVector3(91, 1, 1)};
+    scene.broadphase.setAabbs(batch, lows, highs, &scene.dispatcher);
+    EXPECT_EQ(objects[1].getBroadphaseHandle(), nullptr);
+    EXPECT_EQ(scene.broadphase.grid().size(), 2U);
+    EXPECT_EQ(scene.pairCount(), 1);
+    scene.broadphase.calculateOverlappingPairs(&scene.dispatcher);
+    EXPECT_EQ(scene.broadphase.validate(), "");
+    scene.watchBy(nullptr);
+}
+
 // A group is the program's: none of them makes a world search for pairs twice.
 TEST(Groups, CostTheSameWhateverTheirBits) {
     for (const int group : {1, 2, 16, 32, 64, -1}) {
