@@ -5,6 +5,7 @@
 
 #include <integration/bullet/spatial_hash_broadphase.hpp>
 
+#include <broadphase/core/caught.hpp>
 #include <broadphase/core/on_failure.hpp>
 #include <integration/bullet/pair_cache.hpp>
 
@@ -185,6 +186,12 @@ void SpatialHashBroadphase::removeDeferred(IsPair isPair, btDispatcher* dispatch
     }
     cut_ = &cut;
     const detail::QueryScope scope(pairCache_, detail::QueryScope::Changes::allowed);
+    const detail::OnFailure freeOthers([&] {  // the cache holds them no more
+        while (cut.size() > 0) {
+            static_cast<void>(detail::exceptionOf([&] { freeCut(nullptr, dispatcher); }));
+        }
+        cut_ = nullptr;
+    });
     freeCut(nullptr, dispatcher);
     cut_ = nullptr;
 }

@@ -293,6 +293,41 @@ TEST(CallbacksOfEnds, MayDestroyProxiesOfPairsThatAreYetToLeaveACacheThatDefersR
     EXPECT_EQ(boxes.hash().validate(), "");
 }
 
+TEST(CallbacksOfEnds, MayThrowWhilePairsLeaveACacheThatDefersRemoval) {
+    struct Throwing : btCollisionDispatcher {
+        using btCollisionDispatcher::btCollisionDispatcher;
+        void freeCollisionAlgorithm(void* memory) override {
+            btCollisionDispatcher::freeCollisionAlgorithm(memory);
+            throw std::runtime_error("freeCollisionAlgorithm");
+        }
+    };
+    btDefaultCollisionConfiguration configuration;
+    Throwing dispatcher(&configuration);
+    std::vector<Uids> freed;
+    const NotedAlgorithm::Act nothing;
+    AnyBoxes boxes(std::make_unique<btSortedOverlappingPairCache>());
+    for (const double x : {0.0, 0.5, 0.6, 0.7}) {
+        boxes.create(cubeAt(btScalar(x)));
+    }
+    boxes.step();
+    for (const std::size_t other : {1U, 2U, 3U}) {
+        btBroadphasePair* const pair =
+            boxes.pairCache().findPair(boxes.proxies[0], boxes.proxies[other]);
+        ASSERT_NE(pair, nullptr);
+        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
+        pair->m_algorithm = new (memory) NotedAlgorithm(uidsOf(*pair), freed, nothing);
+    }
+    boxes.set(boxes.proxies[0], cubeAt(50));
+    EXPECT_THROW(boxes.over->calculateOverlappingPairs(&dispatcher), std::runtime_error);
+    EXPECT_EQ(inOrder(freed), (std::vector<Uids>{{1, 2}, {1, 3}, {1, 4}}));
+    EXPECT_EQ(boxes.pairCount(), 3);
+    boxes.over->destroyProxy(boxes.proxies[1], &dispatcher);  // looks at what is yet to leave
+    boxes.proxies.erase(boxes.proxies.begin() + 1);
+    boxes.over->calculateOverlappingPairs(&dispatcher);
+    EXPECT_EQ(boxes.pairCount(), 1);
+    EXPECT_EQ(boxes.hash().validate(), "");
+}
+
 TEST(CallbacksOfEnds, MayDestroyOthersWhileAShapeChangesInACacheThatDefersRemoval) {
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher(&configuration);
