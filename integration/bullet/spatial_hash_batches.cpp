@@ -149,6 +149,10 @@ private:
 
     void setPlain(std::size_t first, std::size_t last) {
         std::atomic<detail::GroupKinds::Set> kinds{0};
+        const auto noteKinds = [&] {
+            owner_.changedKinds_ |= kinds.load(std::memory_order_relaxed);
+        };
+        const detail::OnFailure noteIfSome(noteKinds);  // some boxes may be set
         const auto setBox = [&](std::size_t offset) {
             const std::size_t i = first + offset;
             prefetchAhead(proxies_, i);
@@ -174,7 +178,7 @@ private:
         detail::MoveBatch<btScalar>(owner_.grid_.store())
             .run(last - first, areMany ? ParallelFor(owner_.config_.parallelFor) : serialFor,
                  setBox, moveOf);
-        owner_.changedKinds_ |= kinds.load(std::memory_order_relaxed);
+        noteKinds();
         for (std::size_t i = first; i < last && !owner_.seen_.empty(); ++i) {
             owner_.noteSeen(at(i), true);
         }

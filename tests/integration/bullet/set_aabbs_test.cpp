@@ -14,6 +14,7 @@
 
 #include <deque>
 #include <limits>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -200,6 +201,39 @@ TEST_P(SetAabbs, DoesWhatSingleCallsDoOnAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, SetAabbs, testing::Values(1, 2, 3, 8));
+
+// A mask that was written counts when the box of the other proxy has changed, though setting it failed later.
+TEST(SetAabbs, ThatFailsAndIsRepeatedFindsPairsThatAWrittenMaskAllows) {
+    constexpr std::size_t kCount = 2000;
+    bool isOutOfMemory = false;
+    SpatialHashConfig config;
+    config.parallelFor = [&](std::size_t count, std::size_t grain, LoopBody body) {
+        serialFor(count, grain, body);
+        if (isOutOfMemory && grain == 1) {  // a loop that sets boxes
+            throw std::bad_alloc();
+        }
+    };
+    Boxes boxes(config);
+    std::vector<btVector3> mins;
+    std::vector<btVector3> maxs;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        const Box box = cubeAt(btScalar(2 * i));
+        boxes.create(box);
+        mins.push_back(box.min + btVector3(0, btScalar(0.25), 0));
+        maxs.push_back(box.max + btVector3(0, btScalar(0.25), 0));
+    }
+    const std::vector<btBroadphaseProxy*> moved = boxes.proxies;
+    btBroadphaseProxy* const stays = boxes.create(cubeAt(0), btBroadphaseProxy::SensorTrigger, 0);
+    boxes.step(3);
+    EXPECT_EQ(boxes.pairCount(), 0);
+    stays->m_collisionFilterMask = -1;
+    isOutOfMemory = true;
+    EXPECT_THROW(boxes.broadphase.setAabbs(moved, mins, maxs, nullptr), std::bad_alloc);
+    isOutOfMemory = false;
+    boxes.broadphase.setAabbs(moved, mins, maxs, nullptr);
+    boxes.step();
+    EXPECT_EQ(boxes.list(), (std::vector<Uids>{{1, int(kCount) + 1}}));
+}
 
 }  // namespace
 }  // namespace hashphase::test
