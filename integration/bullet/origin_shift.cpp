@@ -52,11 +52,11 @@ bool canShift(btCollisionWorld& world, const SpatialHashBroadphase& broadphase,
 
 // Kinematic bodies are placed by their motion states in the next step; those of bodies asleep are told
 // by nobody else.
-void shiftMotionState(btRigidBody* body, const btVector3& shift) {
+void shiftMotionState(btRigidBody* body, const btTransform& unshifted, const btVector3& shift) {
     btMotionState* const state = body != nullptr ? body->getMotionState() : nullptr;
     if (state != nullptr) {
-        btTransform place;
-        state->getWorldTransform(place);
+        btTransform place = unshifted;
+        state->getWorldTransform(place);  // which may leave it as it is
         state->setWorldTransform(shifted(place, shift));
     }
 }
@@ -65,10 +65,11 @@ void shiftObjects(btCollisionWorld& world, const btVector3& shift) {
     btCollisionObjectArray& objects = world.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i) {
         btCollisionObject& object = *objects[i];
-        object.setWorldTransform(shifted(object.getWorldTransform(), shift));
+        const btTransform place = object.getWorldTransform();
+        object.setWorldTransform(shifted(place, shift));
         object.setInterpolationWorldTransform(
             shifted(object.getInterpolationWorldTransform(), shift));
-        shiftMotionState(btRigidBody::upcast(&object), shift);
+        shiftMotionState(btRigidBody::upcast(&object), place, shift);
     }
 }
 

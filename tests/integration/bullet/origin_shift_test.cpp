@@ -258,6 +258,24 @@ TEST(WorldOriginShift, MovesGhostsAndWhatTheyOverlap) {
     EXPECT_EQ(ghost.getNumOverlappingObjects(), overlapping);
 }
 
+// As a program's that shows bodies, and asks nothing of them.
+TEST(WorldOriginShift, TellsMotionStatesThatAnswerNothingWhereTheirBodiesAre) {
+    struct WriteOnly : btMotionState {
+        void getWorldTransform(btTransform& /*place*/) const override {}
+        void setWorldTransform(const btTransform& place) override { last = place; }
+        btTransform last = btTransform::getIdentity();
+    };
+    World world;
+    world.buildWall({0, 0, 0}, 1);
+    WriteOnly state;
+    world.body(1).setMotionState(&state);
+    const btTransform before = placeAt({5, 6, 7}, btQuaternion(btVector3(0, 1, 0), 1));
+    world.body(1).setWorldTransform(before);
+    world.shift({kKilometre, 0, 0});
+    EXPECT_EQ(state.last.getOrigin(), btVector3(5 - kKilometre, 6, 7));
+    EXPECT_TRUE(state.last.getBasis() == before.getBasis());
+}
+
 template <class Joint, class... Arguments>
 std::unique_ptr<btTypedConstraint> make(btRigidBody& body, const btTransform& frame,
                                         Arguments... arguments) {
