@@ -13,6 +13,7 @@
 #include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <LinearMath/btMotionState.h>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
@@ -21,6 +22,10 @@ namespace {
 btTransform shifted(const btTransform& place, const btVector3& shift) {
     return btTransform(place.getBasis(), place.getOrigin() - shift);
 }
+
+[[maybe_unused]] constexpr const char* kHasUnknownCoordinates =
+    "shiftWorldOrigin(): the world has soft bodies or multibodies, which cannot be shifted. Remove "
+    "them from the world first.";
 
 bool hasOnlyKnownCoordinates(btCollisionWorld& world) {
     constexpr int unknown =
@@ -42,9 +47,7 @@ bool canShift(btCollisionWorld& world, const SpatialHashBroadphase& broadphase,
     HASHPHASE_ASSERT(
         isItsOwn,
         "shiftWorldOrigin(): the world has another broadphase. Pass the broadphase of the world.");
-    HASHPHASE_ASSERT(isKnown,
-                     "shiftWorldOrigin(): the world has soft bodies or multibodies, which cannot "
-                     "be shifted. Remove them from the world first.");
+    HASHPHASE_ASSERT(isKnown, kHasUnknownCoordinates);
     HASHPHASE_ASSERT(
         isFinite, "shiftWorldOrigin(): the shift is NaN or infinite. Pass finite coordinates [m].");
     return isItsOwn && isKnown && isFinite;
@@ -159,6 +162,14 @@ bool shiftWorldOrigin(btDynamicsWorld& world, SpatialHashBroadphase& broadphase,
         shiftJoint(*world.getConstraint(i), shift);
     }
     return true;
+}
+
+// By its type: dynamic_cast would not link with a Bullet that was compiled without RTTI.
+bool shiftWorldOrigin(btMultiBodyDynamicsWorld& world, SpatialHashBroadphase& broadphase,
+                      const btVector3& shift) {
+    const bool isKnown = world.getNumMultibodies() == 0;
+    HASHPHASE_ASSERT(isKnown, kHasUnknownCoordinates);
+    return isKnown && shiftWorldOrigin(static_cast<btDynamicsWorld&>(world), broadphase, shift);
 }
 
 }  // namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE

@@ -12,6 +12,7 @@
 // Memory   When memory runs out, throws std::bad_alloc and shifts nothing.
 // Misuse   Asserted: the world uses this broadphase, the shift is finite, and there are no soft bodies or
 //          multibodies, which cannot be shifted. If a condition is broken, returns false and shifts nothing.
+// Worlds   A btMultiBodyDynamicsWorld passed as a btDynamicsWorld is refused only if its multibodies have colliders.
 // RTTI     The overload for btCollisionWorld needs RTTI in this library, Bullet and the world's class, to see whether
 //          that world is a btDynamicsWorld. Without RTTI (-fno-rtti), and always with MSVC, that world must have no
 //          rigid bodies (asserted, as above).
@@ -23,6 +24,8 @@
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 
+class btMultiBodyDynamicsWorld;
+
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 
 /// Moves the world's origin to `shift` [m]. Subtracts `shift` from the transforms and interpolation transforms of
@@ -32,6 +35,10 @@ namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 /// Zones, Camera and Terrain. Returns whether the world was shifted. If false, nothing has changed. Cost: O(objects +
 /// contacts + joints), plus SpatialHashBroadphase::shiftOrigin().
 [[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btDynamicsWorld& world,
+                                                            SpatialHashBroadphase& broadphase,
+                                                            const btVector3& shift);
+/// As above. Also refuses multibodies without colliders.
+[[nodiscard]] HASHPHASE_BULLET_EXPORT bool shiftWorldOrigin(btMultiBodyDynamicsWorld& world,
                                                             SpatialHashBroadphase& broadphase,
                                                             const btVector3& shift);
 /// Shifts a world of any type: see RTTI above.

@@ -9,14 +9,16 @@
 #include <broadphase/diagnostics.hpp>
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
 namespace hashphase::inline HASHPHASE_BULLET_NAMESPACE {
 namespace {
 
-btDynamicsWorld* dynamicsWorldOf([[maybe_unused]] btCollisionWorld& world) {
+template <class World>
+World* worldAs([[maybe_unused]] btCollisionWorld& world) {
 #if HASHPHASE_HAS_RTTI
     if (detail::knowsItsType(world)) {
-        return dynamic_cast<btDynamicsWorld*>(&world);
+        return dynamic_cast<World*>(&world);
     }
 #endif
     return nullptr;
@@ -39,7 +41,10 @@ bool mayHaveJoints(btCollisionWorld& world) {
 
 bool shiftWorldOrigin(btCollisionWorld& world, SpatialHashBroadphase& broadphase,
                       const btVector3& shift) {
-    if (btDynamicsWorld* const dynamics = dynamicsWorldOf(world)) {
+    if (auto* const ofMultiBodies = worldAs<btMultiBodyDynamicsWorld>(world)) {
+        return shiftWorldOrigin(*ofMultiBodies, broadphase, shift);
+    }
+    if (auto* const dynamics = worldAs<btDynamicsWorld>(world)) {
         return shiftWorldOrigin(*dynamics, broadphase, shift);
     }
     const bool isKnown = !mayHaveJoints(world);

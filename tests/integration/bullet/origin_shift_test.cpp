@@ -9,6 +9,9 @@
 #include <tests/integration/bullet/dynamics.hpp>
 #include <tests/support/handlers.hpp>
 
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -353,6 +356,30 @@ TEST(WorldOriginShift, OfWhatHasUnknownCoordinatesIsRefused) {
     world.world().addCollisionObject(&soft);
     EXPECT_FALSE(shiftWorldOrigin(world.world(), world.hash(), {1, 0, 0}));
     EXPECT_EQ(soft.getWorldTransform().getOrigin().x(), 3);
+}
+
+TEST(WorldOriginShift, OfMultibodiesIsRefusedThoughTheyHaveNoColliders) {
+    const CaughtAsserts caught;
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btMultiBodyConstraintSolver solver;
+    SpatialHashBroadphase broadphase;
+    btMultiBodyDynamicsWorld world(&dispatcher, &broadphase, &solver, &configuration);
+    EXPECT_TRUE(shiftWorldOrigin(world, broadphase, {1, 0, 0}));
+    btCollisionObject object;
+    btSphereShape shape(1);
+    object.setCollisionShape(&shape);
+    world.addCollisionObject(&object);
+    btMultiBody body(0, 1, {1, 1, 1}, false, false);
+    world.addMultiBody(&body);
+    EXPECT_FALSE(shiftWorldOrigin(world, broadphase, {1, 0, 0}));
+#if HASHPHASE_HAS_RTTI
+    btCollisionWorld& anyWorld = world;
+    EXPECT_FALSE(shiftWorldOrigin(anyWorld, broadphase, {1, 0, 0}));
+#endif
+    EXPECT_EQ(object.getWorldTransform().getOrigin().x(), 0);
+    world.removeMultiBody(&body);
+    world.removeCollisionObject(&object);
 }
 
 }  // namespace
