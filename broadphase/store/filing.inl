@@ -301,6 +301,7 @@ void Store<Scalar>::forgetLastUpdate() noexcept {
         proxies.records[proxyIndex].before = nanBox<Scalar>();
         proxies.records[proxyIndex].isImmediate = false;
     });
+    proxies.woken.clear();  // had no box then, and may be removed for good before the next update
     proxies.boxesAtUpdate.clear();
     proxies.indicesAtUpdate.clear();
     mustRebuildPairs = false;

@@ -277,6 +277,48 @@ TYPED_TEST(AfterAPeak, PairsBeginOfThoseThatGetTheIndicesOfRemovedOnes) {
     world.expectAllBegin(pairs);
 }
 
+// Those that rested, and were removed before the first update, may have no record any more.
+TYPED_TEST(AfterAPeak, PairsBeginWhereThoseThatRestedWereRemovedAndTheirMemoryGivenBack) {
+    constexpr std::uint32_t kCount = 100;
+    const auto placed = [](std::uint32_t i, double y = 0) {
+        return boxAround<TypeParam>({2.0 * i, y, 0}, {1, 1, 1});
+    };
+    for (const bool isRemovedBefore : {true, false}) {
+        Grid<TypeParam> grid;
+        std::vector<ProxyId> ids;
+        for (std::uint32_t i = 0; i < kCount; ++i) {
+            ids.push_back(grid.add(placed(i), Mobility::resting));
+        }
+        const ProxyId mobile = grid.add(placed(0));
+        const ProxyId last = grid.add(placed(kCount), Mobility::resting);
+        UpdateCost cost;
+        for (int i = 0; i < 9; ++i) {
+            grid.move(mobile, placed(0, 9 + i));
+            cost = grid.update();
+        }
+        ASSERT_EQ(cost.resting, kCount + 1);
+        const auto removeLast = [&] {
+            for (const ProxyId id : ids) {
+                grid.move(id, placed(id.index, 1));
+            }
+            grid.remove(last);
+            grid.expectQueries(1'000'000);
+            grid.releaseUnusedMemory();
+            ASSERT_EQ(grid.indexLimit(), kCount + 1);
+        };
+        if (isRemovedBefore) {
+            removeLast();
+        }
+        Pairs<TypeParam> pairs(grid);
+        if (!isRemovedBefore) {
+            removeLast();
+        }
+        EXPECT_EQ(pairs.update().born.size(), kCount - 1);
+        EXPECT_EQ(pairs.validate(), "");
+        EXPECT_EQ(grid.validate(), "");
+    }
+}
+
 TYPED_TEST(AfterAPeak, RadiusSearchesReadAndHoldWhatIsLeft) {
     Population<TypeParam> world;
     world.addMany(20000, anyBox<TypeParam>, 3);
