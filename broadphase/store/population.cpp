@@ -48,6 +48,7 @@ template <class Scalar>
 void Population<Scalar>::makeRoomFor(const Population& from) {
     reserveRecords(from.records.size());
     reserveLists(std::min(from.mobile.capacity(), from.records.size()));
+    waiting.reserve(mobile.capacity() + from.waiting.size());  // which may be of none that is left
     if (!from.groups.empty()) {
         groups.reserve(2 * records.capacity());
     }

@@ -186,6 +186,35 @@ TEST(GridSnapshot, KeepsTheRoomThatWasReserved) {
     EXPECT_EQ(allocationCount(), before);
 }
 
+// Those that came and went are in the list of changes, and memory was given back: there is more in the list than
+// it needs for those that are left.
+TEST(GridSnapshot, MakesRoomForChangesBehindThoseThatWereSaved) {
+    const auto placed = [](int i) { return makeBox<float>(i, 0, 0, i + 1, 1, 1); };
+    Grid<float> grid;
+    std::vector<ProxyId> ids;
+    for (int i = 0; i < 100; ++i) {
+        ids.push_back(grid.add(placed(i)));
+    }
+    grid.update();
+    std::vector<ProxyId> come;
+    for (int i = 0; i < 1000; ++i) {
+        come.push_back(grid.add(placed(i)));
+    }
+    for (const ProxyId id : come) {
+        grid.remove(id);
+    }
+    grid.releaseUnusedMemory();
+    GridSnapshot<float> snapshot;
+    snapshot.save(grid);
+    Grid<float> other;
+    snapshot.restore(other);
+    for (int i = 0; i < 100; ++i) {
+        other.move(ids[static_cast<std::size_t>(i)], placed(i + 1));
+    }
+    EXPECT_EQ(other.validate(), "");
+    EXPECT_EQ(other.box(ids[99]).min().x(), 100);
+}
+
 #if HASHPHASE_ENABLE_ASSERTS
 
 TEST(GridSnapshotMisuse, IsAssertedAndDoesNothing) {
