@@ -76,7 +76,8 @@ private:
         proxies.firstGeneration = from_.read<std::uint32_t>();
         const bool hasGroups = readBool();
         const bool isShifted = readBool();
-        if (!areBools_ || (proxies.firstGeneration & 1) != 0) {
+        if (!areBools_ || (proxies.firstGeneration & 1) != 0 ||
+            proxies.firstGeneration == kLastGeneration) {
             return false;
         }
         proxies.reserveRecords(count);
@@ -108,9 +109,8 @@ private:
         const bool sweeps = (flags & kSweeps) != 0;
         wasSeen_[index] = (flags & kWasSeen) != 0 ? 1 : 0;
         if (flags > 15 || isAlive != proxies.isAlive(index) ||
-            record.generation < proxies.firstGeneration ||
             (!isAlive && (flags & (kSweeps | kRestsAtOnce)) != 0) ||
-            (sweeps && (!twin_->hasSweeps || wasSeen_[index] == 0))) {
+            (sweeps && !twin_->hasSweeps)) {
             return false;
         }
         if (isAlive) {
@@ -125,9 +125,6 @@ private:
             record.before = readBox();
             if (!proxies.boxesAtUpdate.empty()) {
                 proxies.boxesAtUpdate[index] = readBox();
-            }
-            if (sweeps && !hasNan(record.before)) {
-                return false;
             }
         }
         record.changedAt = isAlive || wasSeen_[index] != 0 ? proxies.updateNumber : 0;
@@ -241,8 +238,7 @@ private:
     // What swept stood nowhere at the last update.
     [[nodiscard]] bool haveSwept(PairKey key) const {
         const auto& records = twin_->store.proxies.records;
-        return twin_->hasSweeps && (hasNan(records[firstIndex(key)].before) ||
-                                    hasNan(records[secondIndex(key)].before));
+        return hasNan(records[firstIndex(key)].before) || hasNan(records[secondIndex(key)].before);
     }
 
     [[nodiscard]] bool readRemembered() {

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 
 namespace hashphase::detail {
 namespace {
@@ -112,8 +113,11 @@ private:
             to_.write(known.pile->lookInterval);
             to_.write(known.pile->updatesUntilLook);
         }
-        const auto ignored =
-            known.ignored != nullptr ? known.ignored->pairs() : std::span<const ProxyPair>();
+        std::vector<ProxyPair> ignored;  // of a removed proxy, not even the index may be left
+        if (known.ignored != nullptr) {
+            std::ranges::copy_if(known.ignored->pairs(), std::back_inserter(ignored),
+                                 [&](const ProxyPair& pair) { return twin_.pairs.areAlive(pair); });
+        }
         to_.write(static_cast<std::uint32_t>(ignored.size()));
         for (const ProxyPair& pair : ignored) {
             for (const ProxyId id : {pair.first, pair.second}) {

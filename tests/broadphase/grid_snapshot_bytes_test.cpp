@@ -3,6 +3,7 @@
 // Snapshots of grids as bytes: they have the same results where they are read, and no bytes break anything.
 
 #include <broadphase/grid_snapshot.hpp>
+#include <broadphase/sweeps.hpp>
 
 #include <tests/broadphase/played_grid.hpp>
 #include <tests/support/forged_bytes.hpp>
@@ -11,12 +12,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 namespace hashphase::test {
 namespace {
+
+Aabb<float> unitBox(double x) {
+    return makeBox<float>(x, 0, 0, x + 1, 1, 1);
+}
 
 /// As bytes and back.
 template <class Scalar>
@@ -63,6 +70,86 @@ TEST_P(GridSnapshotBytes, HoldAllThatMattersInDoublePrecision) {
 }
 INSTANTIATE_TEST_SUITE_P(All, GridSnapshotBytes, testing::ValuesIn(plays()),
                          [](const auto& play) { return play.param.name; });
+
+/// Saves, sends and restores elsewhere; then both report the same.
+void expectTheSamePairsWhereTheyAreSent(Pairs<float>& pairs) {
+    GridSnapshot<float> snapshot;
+    snapshot.save(pairs);
+    Grid<float> grid(pairs.grid().store().config);
+    Sweeps<float> sweeps(grid);
+    Pairs<float> other(grid, pairs.sweeps() != nullptr ? &sweeps : nullptr);
+    const GridSnapshot<float> received = sent(snapshot);
+    ASSERT_EQ(received.faultFor(other), "");
+    received.restore(other);
+    EXPECT_EQ(other.count(), pairs.count());
+    EXPECT_EQ(grid.validate(), "");
+    for (int i = 0; i < 2; ++i) {
+        const PairChanges there = other.update();
+        const PairChanges here = pairs.update();
+        EXPECT_TRUE(std::ranges::equal(there.born, here.born));
+        EXPECT_TRUE(std::ranges::equal(there.died, here.died));
+        EXPECT_EQ(other.validate(), "");
+    }
+    EXPECT_EQ(grid.add(unitBox(50)), pairs.grid().add(unitBox(50)));
+}
+
+TEST(GridSnapshotBytes, OfAGridWhoseOldProxiesHaveLowerGenerationsThanNewOnesAreRead) {
+    Grid<float> grid;
+    static_cast<void>(grid.add(unitBox(0)));
+    grid.remove(grid.add(unitBox(1)));
+    grid.update();
+    grid.releaseUnusedMemory();
+    ASSERT_EQ(grid.indexLimit(), 1U);
+    Pairs<float> pairs(grid);
+    expectTheSamePairsWhereTheyAreSent(pairs);
+}
+
+TEST(GridSnapshotBytes, OfIgnoredPairsOfRemovedProxiesAreRead) {
+    Grid<float> grid;
+    Pairs<float> pairs(grid);
+    const ProxyId a = grid.add(unitBox(0));
+    const ProxyId b = grid.add(unitBox(0));
+    const ProxyId c = grid.add(unitBox(0));
+    static_cast<void>(pairs.ignore({a, b}));
+    static_cast<void>(pairs.ignore({a, c}));
+    static_cast<void>(pairs.update());
+    grid.remove(c);
+    static_cast<void>(pairs.update());
+    grid.releaseUnusedMemory();
+    ASSERT_EQ(grid.indexLimit(), 2U);
+    expectTheSamePairsWhereTheyAreSent(pairs);
+    EXPECT_EQ(pairs.count(), 0U);
+}
+
+TEST(GridSnapshotBytes, OfContactsOfSweepsThatAreGoneAreRead) {
+    Grid<float> grid;
+    Sweeps<float> sweeps(grid);
+    Pairs<float> pairs(grid, &sweeps);
+    sweeps.set(grid.add(unitBox(0)), {10, 0, 0});
+    static_cast<void>(grid.add(unitBox(5)));
+    ASSERT_EQ(pairs.update().born.size(), 1U);
+    pairs.setSweeps(nullptr);
+    expectTheSamePairsWhereTheyAreSent(pairs);
+    EXPECT_EQ(pairs.count(), 0U);
+}
+
+// The one that sweeps is new, or stood at the last update.
+TEST(GridSnapshotBytes, AfterAnUpdateThatFailedAsASweepBeganAreRead) {
+    for (const bool isNew : {true, false}) {
+        Grid<float> grid;
+        Sweeps<float> sweeps(grid);
+        Pairs<float> pairs(grid, &sweeps);
+        static_cast<void>(grid.add(unitBox(5)));
+        static_cast<void>(grid.add(unitBox(0.5)));
+        const ProxyId sweeper = isNew ? ProxyId{} : grid.add(unitBox(0));
+        static_cast<void>(pairs.update());
+        sweeps.set(isNew ? grid.add(unitBox(0)) : sweeper, {10, 0, 0});
+        const auto fail = [](ProxyId, ProxyId) -> bool { throw std::runtime_error("no answer"); };
+        EXPECT_THROW(static_cast<void>(pairs.update(fail)), std::runtime_error);
+        expectTheSamePairsWhereTheyAreSent(pairs);
+        EXPECT_EQ(pairs.count(), 2U);
+    }
+}
 
 TEST(GridSnapshot, RefusesBytesThatAreTornOrChanged) {
     BetweenTwoStates between;
