@@ -112,6 +112,9 @@ private:
 template <class Scalar>
 std::optional<Scalar> Sweeps<Scalar>::keyOnTheWay(const auto& region, const Motion& motion) const {
     const MovingBox<Scalar> way = sweeping_.motions.wayOf(motion);
+    if (hasNan(way.box)) {
+        return std::nullopt;  // region.key() might find it
+    }
     const auto keyOf = [&](const Box& box) -> std::optional<Scalar> {
         const Scalar key = region.key(box);
         return key >= 0 ? std::optional(key) : std::nullopt;

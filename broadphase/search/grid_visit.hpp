@@ -56,12 +56,8 @@ struct Grid<Scalar>::VisitReader {
         for (std::size_t k = 0; k < count; ++k) {
             const std::uint32_t proxyIndex = store.proxies.waiting[k];
             if (store.proxies.isAlive(proxyIndex)) {
-                const Aabb<Scalar>& box = store.proxies.records[proxyIndex].box;
-                if (HASHPHASE_OVERLOOKS_NAN && hasNan(box)) {
-                    continue;  // key() might find it
-                }
                 ++cost.boxesTested;
-                const Scalar key = regions[i].key(box);
+                const Scalar key = keyNow(i, proxyIndex);
                 if (detail::isWanted(key, collectors[i])) {
                     ++cost.hits;
                     collectors[i].add(store.proxies.idOf(proxyIndex), key);
@@ -128,7 +124,6 @@ private:
     }
 
     bool readLine(const Filing& filing) {
-        const Region& region = regions[0];
         const auto take = [&](std::span<const std::uint32_t> proxyIndices) {
             for (const std::uint32_t proxyIndex : proxyIndices) {
                 detail::prefetch(&store.proxies.records[proxyIndex]);
@@ -136,10 +131,10 @@ private:
             // Whatever is listed in a table may have left it.
             const bool goesOn = offerIndices(
                 proxyIndices, [&](auto proxyIndex) { return isThere(filing, proxyIndex); },
-                [&](auto proxyIndex) { return region.key(store.proxies.records[proxyIndex].box); });
+                [&](auto proxyIndex) { return keyNow(0, proxyIndex); });
             return goesOn ? static_cast<double>(collectors[0].limit()) : -1.0;
         };
-        return store.searchAlong(region.segment(), *filing.table,
+        return store.searchAlong(regions[0].segment(), *filing.table,
                                  static_cast<double>(collectors[0].limit()), take, cost);
     }
 
@@ -162,7 +157,7 @@ private:
             // What is fresh has no list of what the collector has changed since: boxes are asked for
             // as they are now.
             if (mayChange && reading.isFresh) {
-                key = regions[i].key(store.proxies.records[proxyIndex].box);
+                key = keyNow(i, proxyIndex);
                 if (!detail::isWanted(key, collector)) {
                     continue;
                 }
@@ -200,6 +195,11 @@ private:
         return collector.limit() >= 0 || collectors.size() > 1;
     }
 
+    // A region's key() might find a NaN.
+    [[nodiscard]] Scalar keyNow(std::size_t i, std::uint32_t proxyIndex) const {
+        const detail::Record<Scalar>& record = store.proxies.records[proxyIndex];
+        return record.isNan ? Scalar(-1) : regions[i].key(record.box);
+    }
     [[nodiscard]] bool isThere(const Filing& filing, std::uint32_t proxyIndex) const {
         return store.standsIn(filing, proxyIndex, reading);
     }

@@ -4,7 +4,9 @@
 
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <broadphase/sweeps.hpp>
 #include <demos/stability/run_together.hpp>
+#include <tests/support/call_each.hpp>
 #include <tests/support/handlers.hpp>
 #include <tests/support/population.hpp>
 #include <tests/support/script.hpp>
@@ -183,6 +185,72 @@ TYPED_TEST(GridQuery, OfCellsGoesByTheFinestCellsInUse) {
         world.update();
         EXPECT_LT(world.grid.cellSize(), 4);
     }
+}
+
+/// What is not above a height. Its key is 0 for a NaN, too.
+struct Below {
+    [[nodiscard]] static float key(const Aabb<float>& box) {
+        return box.min().y() > 3 ? -1.0F : 0.0F;
+    }
+    [[nodiscard]] static Aabb<float> bounds() {
+        return boxAround<float>({0, 0, 0}, {1e9, 1e9, 1e9});
+    }
+};
+
+// Filed or in the list of changes, and when the collector of a query changes it.
+TEST(GridQueryOfNan, FindsNoneWhateverTheRegionsKeyIs) {
+    const CaughtMessages aboutNan;
+    for (const bool isFiled : {false, true}) {
+        SCOPED_TRACE(isFiled);
+        Population<float> world;
+        world.addMany(100, cubesIn<float>(0, 2, 1));
+        world.update();
+        world.grid.move(world.proxies[7].id, detail::nanBox<float>());
+        const auto begin = [&] {
+            for (std::size_t i = 10; i < 90; ++i) {
+                world.moveTo(i, shifted(world.random, world.proxies[i].box, 0.1));
+            }
+            if (isFiled) {
+                world.grid.expectQueries(1'000'000);
+            }
+        };
+        begin();
+        CollectCount one;
+        CollectCount each;
+        const Below below;
+        world.grid.visit(below, one);
+        world.grid.visitEach(std::span(&below, 1), std::span(&each, 1));
+        EXPECT_EQ(one.count(), 99U);
+        EXPECT_EQ(each.count(), 99U);
+        begin();
+        std::size_t found = 0;
+        CallEach collector{[&](ProxyId first, float) {
+            for (std::size_t i = 0; i < 100 && found == 0; ++i) {
+                if (world.proxies[i].id != first) {
+                    world.grid.move(world.proxies[i].id, detail::nanBox<float>());
+                }
+            }
+            ++found;
+        }};
+        world.grid.visit(below, collector);
+        EXPECT_EQ(found, 1U);
+    }
+}
+
+TEST(GridQueryOfNan, FindsNoneOnItsWay) {
+    const CaughtMessages aboutNan;
+    Grid<float> grid;
+    Sweeps<float> sweeps(grid);
+    const Aabb<float> box = makeBox<float>(0, 0, 0, 1, 1, 1);
+    sweeps.set(grid.add(detail::nanBox<float>()), {1, 0, 0});
+    sweeps.set(grid.add(box), MovingBox<float>{detail::nanBox<float>(), {1, 0, 0}});
+    CollectCount none;
+    sweeps.visit(Below(), none);
+    EXPECT_EQ(none.count(), 0U);
+    sweeps.set(grid.add(detail::nanBox<float>()), MovingBox<float>{box, {1, 0, 0}});
+    CollectCount one;
+    sweeps.visit(Below(), one);
+    EXPECT_EQ(one.count(), 1U);
 }
 
 // --- On threads ----------------------------------------------------------------------------------
