@@ -63,9 +63,10 @@ public:
     PairChanges update(PairFilter filter = acceptAllPairs, ParallelFor parallelFor = serialFor) &;
 
     /// Finds pairs of this proxy that began to overlap since the last update. Returns them as born; update() does not
-    /// repeat them. For sweeping proxies, only the boxes at the start of paths count. May also return died pairs.
-    /// Calls since the last update() returned these pairs as born, and afterwards a proxy of the pair was removed.
-    /// Asserted: the proxy is alive. Cost: as a box query.
+    /// repeat them. For sweeping proxies, only the boxes at the start of paths count: for Sweeps::set() with a
+    /// MovingBox, MovingBox::box. May also return died pairs. Calls since the last update() returned these pairs as
+    /// born, and afterwards a proxy of the pair was removed. Asserted: the proxy is alive. Cost: as a box query, plus
+    /// a comparison for each sweeping proxy.
     PairChanges findPairsNow(ProxyId id, PairFilter filter) &;
 
     /// Like findPairsNow(id, filter), but finds only pairs with proxies in `others`, which must contain no

@@ -131,8 +131,25 @@ void listIfNew(PairState<Scalar>& pairs, PairKey key) {
     }
 }
 
+// Lists those that sweep by a box of their own which is not within the one that the grid finds.
+template <class Scalar>
+void listStrays(PairState<Scalar>& pairs) {
+    std::vector<std::uint32_t>& strays = pairs.scratch.strays;
+    strays.clear();
+    if (pairs.sweeping == nullptr) {
+        return;
+    }
+    for (const Motion<Scalar>& motion : pairs.sweeping->motions.all) {
+        if (!motion.isFromGrid && pairs.proxies.contains(motion.id) &&
+            !Store<Scalar>::staysWithin(motion.way.box,
+                                        pairs.proxies.records[motion.id.index].box)) {
+            strays.push_back(motion.id.index);
+        }
+    }
+}
+
 // Lists, to be asked about, the proxy's candidates that overlap now and are not known: those with others
-// that are wanted.
+// that are wanted. After listStrays(). Of two candidates, each finds the other.
 template <class Scalar, class IsWanted>
 void findNewCandidates(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
                        const IsWanted& isWanted) {
@@ -154,6 +171,11 @@ void findNewCandidates(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
     for (std::size_t i = 0; i < proxies.waiting.size() && !reading.isFresh; ++i) {
         const std::uint32_t other = proxies.waiting[i];
         if (proxies.isAlive(other) && overlaps(box, proxies.records[other].box)) {
+            add(other);
+        }
+    }
+    for (const std::uint32_t other : pairs.scratch.strays) {
+        if (!overlaps(box, proxies.records[other].box)) {  // or it has been found
             add(other);
         }
     }

@@ -99,6 +99,7 @@ template <class Scalar>
                                        PairFilter filter) {
     beginCall(pairs);
     findImmediateOfRemoved(pairs);
+    listStrays(pairs);
     findNewCandidates(pairs, proxyIndex, [](std::uint32_t) { return true; });
     return endCall(pairs, filter);
 }
@@ -140,13 +141,6 @@ void listAgain(PairState<Scalar>& pairs, PairKey key) {
     }
 }
 
-// Whether findNewCandidates() of one comes upon the other, which it looks for by its box in the grid.
-template <class Scalar>
-[[nodiscard]] bool wouldFind(const PairState<Scalar>& pairs, std::uint32_t finder,
-                             std::uint32_t found) {
-    return overlaps(pairs.boxAtStart(finder), pairs.proxies.records[found].box);
-}
-
 // Where they are asked about in parts, those with a proxy that has been dealt with are left out.
 template <class Scalar>
 void askAgainAboutFew(PairState<Scalar>& pairs, std::span<const ProxyId> ids, PairFilter filter) {
@@ -155,14 +149,13 @@ void askAgainAboutFew(PairState<Scalar>& pairs, std::span<const ProxyId> ids, Pa
     const auto isDone = [&](std::uint32_t proxyIndex) {
         return proxyIndex < isNamed.size() && isNamed[proxyIndex] != 0;
     };
+    listStrays(pairs);
     for (const ProxyId id : ids) {
         if (!pairs.proxies.contains(id) || isDone(id.index)) {
             continue;
         }
         if (pairs.store.cost.changed > 0) {
-            findNewCandidates(pairs, id.index, [&](std::uint32_t other) {
-                return !(isDone(other) && wouldFind(pairs, other, id.index));
-            });
+            findNewCandidates(pairs, id.index, [&](std::uint32_t other) { return !isDone(other); });
         }
         forEachKnown(pairs, id.index, [&](PairKey key) {
             if (!isDone(firstIndex(key)) && !isDone(secondIndex(key))) {
@@ -182,11 +175,11 @@ void askAgainAboutMany(PairState<Scalar>& pairs, PairFilter filter, const IsName
     const Population<Scalar>& proxies = pairs.proxies;
     constexpr std::size_t kPart = PairState<Scalar>::kPart;
     if (pairs.store.cost.changed > 0) {
+        listStrays(pairs);
         for (const std::uint32_t proxyIndex : proxies.mobile) {
             if (proxies.changedNow(proxyIndex) && proxies.isAlive(proxyIndex)) {
                 findNewCandidates(pairs, proxyIndex, [&](std::uint32_t other) {
-                    const bool isFoundByOther = other < proxyIndex && proxies.changedNow(other) &&
-                                                wouldFind(pairs, other, proxyIndex);
+                    const bool isFoundByOther = other < proxyIndex && proxies.changedNow(other);
                     return (isNamed(proxyIndex) || isNamed(other)) && !isFoundByOther;
                 });
                 askInParts(pairs, filter, kPart);

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <span>
 #include <utility>
@@ -172,6 +173,60 @@ TYPED_TEST(SweptBoxes, MakePairsByTheSweepsThatAreGiven) {
     third = nullptr;  // neither the first nor the last that the grid knows
     pairs.setSweeps(&first);
     expectPairsWith({near});
+}
+
+// Where its way begins, and not where the grid has it.
+TYPED_TEST(SweptBoxes, MakePairsBetweenUpdatesWhereTheirWaysBegin) {
+    Grid<TypeParam> grid;
+    Sweeps<TypeParam> sweeps(grid);
+    Pairs<TypeParam> pairs(grid, &sweeps);
+    const ProxyId target = grid.add(this->cubeAt(100));
+    const ProxyId bullet = grid.add(this->cubeAt(50));
+    const ProxyId other = grid.add(this->cubeAt(70));
+    sweeps.set(bullet, MovingBox<TypeParam>{this->cubeAt(0), {5, 0, 0}});
+    sweeps.set(other, MovingBox<TypeParam>{this->cubeAt(3), {0, 5, 0}});
+    std::size_t asked = 0;
+    const auto accept = [&asked](ProxyId, ProxyId) {
+        ++asked;
+        return true;
+    };
+    const auto expectOneBorn = [&](const auto& find) {
+        static_cast<void>(pairs.update());
+        const std::size_t before = pairs.count();
+        grid.move(target, this->cubeAt(0));
+        asked = 0;
+        const PairChanges changes = find();
+        ASSERT_EQ(changes.born.size(), 1U);
+        EXPECT_EQ(changes.born[0], makePair(target, bullet));
+        EXPECT_EQ(asked, 1U);
+        EXPECT_TRUE(pairs.update(accept).born.empty());
+        EXPECT_EQ(pairs.validate(), "");
+        grid.move(target, this->cubeAt(100));
+        static_cast<void>(pairs.update());
+        EXPECT_EQ(pairs.count(), before);
+    };
+    expectOneBorn([&] { return pairs.findPairsNow(target, std::span(&bullet, 1), accept); });
+    expectOneBorn([&] { return pairs.findPairsNow(target, accept); });
+    const auto refiltered = [&](const PairChanges& changes) {
+        asked = 1;  // of those that stand, too
+        return changes;
+    };
+    expectOneBorn([&] { return refiltered(pairs.refilter(target, accept)); });
+    expectOneBorn([&] { return refiltered(pairs.refilter(bullet, accept)); });
+    const std::array both{bullet, target};
+    expectOneBorn([&] { return refiltered(pairs.refilter(both, accept)); });
+    expectOneBorn([&] { return refiltered(pairs.refilterAll(accept)); });
+    // The grid has it at the target, too.
+    grid.move(bullet, this->cubeAt(0.5));
+    expectOneBorn([&] { return pairs.findPairsNow(target, accept); });
+    // Only the grid has it there.
+    static_cast<void>(pairs.update());
+    sweeps.set(bullet, MovingBox<TypeParam>{this->cubeAt(-50), {5, 0, 0}});
+    grid.move(target, this->cubeAt(0));
+    EXPECT_TRUE(pairs.findPairsNow(target, accept).born.empty());
+    // Two that sweep.
+    sweeps.set(bullet, MovingBox<TypeParam>{this->cubeAt(3), {0, 5, 0}});
+    EXPECT_EQ(pairs.findPairsNow(other, accept).born.size(), 1U);
 }
 
 }  // namespace
