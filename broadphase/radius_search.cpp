@@ -255,14 +255,15 @@ template <class Scalar>
 void RadiusSearch<Scalar>::take(const Grid<Scalar>& grid, Scalar radius, ProxyFilter filter,
                                 ParallelFor parallelFor) {
     HASHPHASE_ASSERT(!detail::QueryScope::isWithin(this), kIsAsked);
-    if (peaks_.isPast(std::max(grid.store().listedCount(), placeCount_), staged_.capacity())) {
-        releaseMemory();
-    }
     const detail::OnFailure takeNone([&] {
         ids_.clear();
         agentCount_ = 0;
         leftOut_ = 0;
     });
+    grid.store().mendTables();  // or a query would, while the lists are read
+    if (peaks_.isPast(std::max(grid.store().listedCount(), placeCount_), staged_.capacity())) {
+        releaseMemory();
+    }
     placeCount_ = grid.size() == 0 ? 0 : grid.store().listFew(few_);
     chooseCells(grid, radius, filter);
     stage(grid, filter, parallelFor);

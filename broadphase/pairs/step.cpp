@@ -39,6 +39,7 @@ void step(Store<Scalar>& store, PairState<Scalar>* pairs, PairFilter filter,
         }
         store.refreshFiled(parallelFor);
         store.fileMobile(parallelFor);
+        store.tables.mustRefileMobile.store(false, std::memory_order_relaxed);
         isDone = pairs == nullptr || findBegun(*pairs, someSettled, filter, parallelFor);
         if (!isDone) {
             rememberInstead(*pairs);

@@ -203,7 +203,6 @@ void Store<Scalar>::fileMobile(ParallelFor parallelFor) {
     cost.filed += tables.mobile.size();
     fileSweeping(parallelFor);
     dropList();
-    tables.mustRefileMobile.store(false, std::memory_order_release);
 }
 
 // What sweeps is filed apart, for queries: their boxes may be many times as large as those of what

@@ -113,6 +113,7 @@ void Store<Scalar>::mendTables() const {
         if (!hasPairs) {
             self.relistMobile();
         }
+        self.tables.mustRefileMobile.store(false, std::memory_order_release);
     }
 }
 

@@ -260,6 +260,7 @@ void Store<Scalar>::endSweeps() noexcept {
 template <class Scalar>
 std::size_t Store<Scalar>::listFew(std::vector<std::uint32_t>& few) const {
     few.clear();
+    mendTables();  // or a query would, while the lists are read
     if (!isSparse()) {
         return proxies.records.size();
     }

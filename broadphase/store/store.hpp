@@ -252,6 +252,7 @@ struct HASHPHASE_BROADPHASE_TEMPLATE_EXPORT Store {
     [[nodiscard]] bool settleIdle(ParallelFor parallelFor);
     void listResting();
     void fileResting(ParallelFor parallelFor);
+    /// Tables::mustRefileMobile is set until the caller has done what belongs to it.
     void fileMobile(ParallelFor parallelFor);
     void fileSweeping(ParallelFor parallelFor);
     void clearSweeping() noexcept;

@@ -4,6 +4,7 @@
 
 #include <broadphase/grid.hpp>
 #include <broadphase/proxy_filter.hpp>
+#include <broadphase/radius_search.hpp>
 #include <broadphase/sweeps.hpp>
 #include <demos/stability/run_together.hpp>
 #include <tests/support/call_each.hpp>
@@ -338,6 +339,42 @@ TEST_F(GridThreads, WhateverIsConstMayBeAskedBesideTheQueryThatFiles) {
                                  isSameBits(grid.box(proxy.id), proxy.box) &&
                                  grid.cellsOf(proxy.id).lowest == grid.cellAt(proxy.box.min());
             wrong += isRight ? "" : "const members";
+        });
+    }
+}
+
+// Few of many indices have proxies, so that those that are listed are read.
+TEST_F(GridThreads, AllProxiesAreReadBesideQueriesAfterAShiftThatRounds) {
+    for (int i = 0; i < 9000; ++i) {
+        boxes.grid.remove(boxes.grid.add(boxes.proxies[0].box));
+        boxes.add(boxes.proxies[0].box);
+    }
+    boxes.update();
+    boxes.keepOnly([](std::size_t i) { return i < 1000; });
+    boxes.update();
+    const Grid<float>& grid = boxes.grid;
+    std::size_t seen = 0;
+    const auto count = [&seen](ProxyId, const Aabb<float>&) { ++seen; };
+    for (int round = 0; round < 10; ++round) {
+        ASSERT_GT(boxes.grid.shiftOrigin({0.1F, 0.3F, 0}), 0U);
+        const std::uint64_t filings = grid.filingCount();
+        grid.forEach(count);
+        EXPECT_EQ(grid.filingCount(), filings + 1) << "before the list is read";
+        ASSERT_GT(boxes.grid.shiftOrigin({0.1F, 0.3F, 0}), 0U);
+        expectNothingWrong([&](std::size_t t, std::string& wrong) {
+            std::size_t found = 0;
+            if (t == 0) {
+                CollectCount all;
+                grid.visit(SphereRegion<float>({0, 0, 0}, 1e9F), all);
+                found = all.count();
+            } else if (t == 1) {
+                RadiusSearch<float> search;
+                search.take(grid, 1);
+                found = search.size();
+            } else {
+                grid.forEach([&found](ProxyId, const Aabb<float>&) { ++found; });
+            }
+            wrong += found == 1000 ? "" : "some are missing";
         });
     }
 }
