@@ -8,6 +8,7 @@
 // pair, in parts.
 
 #include <broadphase/core/caught.hpp>
+#include <broadphase/core/query_scope.hpp>
 #include <broadphase/pairs/candidates.inl>
 #include <broadphase/pairs/filter.inl>
 #include <broadphase/pairs/watched.inl>
@@ -207,7 +208,8 @@ void rememberRefusedIfFew(PairState<Scalar>& pairs) {
 }
 
 // Whether the refused ones have become few again is looked at after 1, 2, 4, 8 ... updates: it may cost as much
-// as finding all that overlap.
+// as finding all that overlap. From within a query, tables that it reads must not be filed anew: so the refused
+// ones stay remembered until the next call.
 template <class Scalar>
 void chooseSide(PairState<Scalar>& pairs, bool isUpdated) noexcept {
     constexpr std::uint32_t kSeldom = 256;
@@ -215,7 +217,7 @@ void chooseSide(PairState<Scalar>& pairs, bool isUpdated) noexcept {
     const bool isChosen = hasRoomFor([&] {
         if (!known.arePairs()) {
             if (known.refusedCount() + known.immediate.size() > mostRefused(pairs) &&
-                !pairs.store.mustRebuildPairs) {
+                !pairs.store.mustRebuildPairs && !QueryScope::isWithin(&pairs.store)) {
                 rememberPairs(pairs);
             }
         } else if (isUpdated && pairs.cost.grid.changed > 0 &&

@@ -3,6 +3,7 @@
 // Where the filter refuses most of what overlaps, the pairs are remembered, and the refused ones not: the
 // same is told, and asked, and neither cost nor memory follows what is refused.
 
+#include <tests/support/call_each.hpp>
 #include <tests/support/count_allocations.hpp>
 #include <tests/support/out_of_memory.hpp>
 #include <tests/support/pair_world.hpp>
@@ -363,6 +364,55 @@ TEST(RefusedPilesAfterSettledOnes, AreAskedAboutAgainByAFilterThatQueries) {
     EXPECT_EQ(changes.born.size(), kPairs);
     EXPECT_EQ(pairs.count(), kPairs);
     EXPECT_EQ(pairs.validate(), "");
+}
+
+// What had settled would go, and the mobile ones be filed again by a query, while another one reads them.
+TEST(RefusedPilesAfterSettledOnes, ThatACollectorRefusesAreRememberedFromTheNextUpdateOn) {
+    const auto refuse = [](ProxyId, ProxyId) { return false; };
+    Grid<float> grid({.cellSize = 2, .slack = 0.1});
+    Pairs<float> pairs(grid);
+    Random random(0x5eed0d33);
+    std::vector<ProxyId> settled;
+    const auto placed = [&](std::size_t i) {
+        return boxAround<float>({10.0 * static_cast<double>(i), 100, 0.5}, {0.5, 0.5, 0.5});
+    };
+    for (std::size_t i = 0; i < 40; ++i) {
+        settled.push_back(grid.add(placed(i)));
+    }
+    for (int update = 0; update < 60; ++update) {
+        for (std::size_t i = 0; i < settled.size(); ++i) {
+            grid.move(settled[i], shifted(random, placed(i), 0.01));
+        }
+        static_cast<void>(pairs.update());
+    }
+    ASSERT_EQ(pairs.lastCost().grid.resting, settled.size());
+    constexpr std::size_t kCount = 300;
+    const auto box = makeBox<float>(0, 0, 0, 1, 1, 1);
+    std::vector<ProxyId> ids;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        ids.push_back(grid.add(box));
+    }
+    EXPECT_EQ(pairs.update().born.size(), kCount * (kCount - 1) / 2);
+    ASSERT_FALSE(pairs.remembersPairs());
+    const std::uint64_t filings = grid.filingCount();
+    std::size_t found = 0;
+    CallEach collector{[&](ProxyId, float) {
+        if (++found == 1) {
+            EXPECT_EQ(pairs.refilterAll(refuse).died.size(), kCount * (kCount - 1) / 2);
+        }
+        CollectCount within;
+        grid.visit(BoxRegion<float>{box}, within);
+        EXPECT_EQ(within.count(), kCount);
+    }};
+    grid.visit(SphereRegion<float>({0, 0, 0}, 1e9F), collector);
+    EXPECT_EQ(found, kCount + settled.size());
+    EXPECT_EQ(grid.filingCount(), filings);
+    EXPECT_FALSE(pairs.remembersPairs());
+    grid.move(ids[0], makeBox<float>(0, 0, 0, 1, 1, 2));
+    EXPECT_TRUE(pairs.update(refuse).born.empty());
+    EXPECT_TRUE(pairs.remembersPairs());
+    EXPECT_EQ(pairs.validate(), "");
+    EXPECT_EQ(grid.validate(), "");
 }
 
 // A pile of pairs is asked in parts once; what follows is as fast as ever.
