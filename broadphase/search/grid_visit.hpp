@@ -49,11 +49,11 @@ struct Grid<Scalar>::VisitReader {
         }
     }
 
-    // Offers what changed since it was filed, by the boxes as they are now. Not by iterators: the collector
-    // may change the list.
-    void readWaiting(std::size_t i) {
+    // Offers what changed since it was filed, which is listed from `first` on, by the boxes as they are now. Not
+    // by iterators: the collector may change the list.
+    void readWaiting(std::size_t i, std::size_t first) {
         const std::size_t count = store.proxies.waiting.size();
-        for (std::size_t k = 0; k < count; ++k) {
+        for (std::size_t k = first; k < count; ++k) {
             const std::uint32_t proxyIndex = store.proxies.waiting[k];
             if (store.proxies.isAlive(proxyIndex)) {
                 ++cost.boxesTested;
@@ -154,8 +154,8 @@ private:
             if (!detail::isWanted(key, collector) || !(doAllStand || isThere(filing, proxyIndex))) {
                 continue;
             }
-            // What is fresh has no list of what the collector has changed since: boxes are asked for
-            // as they are now.
+            // What is fresh has what the collector has changed since, too: boxes are asked for as they are
+            // now.
             if (mayChange && reading.isFresh) {
                 key = keyNow(i, proxyIndex);
                 if (!detail::isWanted(key, collector)) {
@@ -231,10 +231,11 @@ QueryCost Grid<Scalar>::visitTogether(const Reading& reading, std::span<const Re
     const bool doAllStand = !mayChange && store_.doAllStand(reading);
     VisitReader<Region, Collector> reader{store_, reading,    regions,  collectors,
                                           cost,   doAllStand, mayChange};
+    const std::size_t filedCount = reading.isFresh ? store_.proxies.waiting.size() : 0;
     reader.readTables(reading.filings());
-    for (std::size_t i = 0; i < regions.size() && !reading.isFresh; ++i) {
+    for (std::size_t i = 0; i < regions.size(); ++i) {
         if (collectors[i].limit() >= 0) {
-            reader.readWaiting(i);
+            reader.readWaiting(i, filedCount);
         }
     }
     return cost;

@@ -238,6 +238,57 @@ TEST_P(GridCallbacksAfterFiling, MayChangeMuchAndAskAndFindWhatIsThere) {
 
 INSTANTIATE_TEST_SUITE_P(ByUpdateOrQueries, GridCallbacksAfterFiling, testing::Bool());
 
+// Filed by an update, or by queries since.
+TEST(GridCallbacks, MayChangeInManyWaysWhatRestsAndIsStillToCome) {
+    for (const int change : {0, 1, 2, 3, 4, 5}) {
+        SCOPED_TRACE(change);
+        Grid<float> grid;
+        Sweeps<float> sweeps(grid);
+        Pairs<float> pairs(grid, &sweeps);
+        std::vector<ProxyId> resting;
+        std::vector<ProxyId> mobile;
+        for (int i = 0; i < 100; ++i) {
+            resting.push_back(grid.add(cube(10 * i), Mobility::resting));
+            mobile.push_back(grid.add(cube(10 * i + 5)));
+        }
+        for (int update = 0; update < 9; ++update) {
+            for (const ProxyId id : mobile) {
+                grid.move(id, cube(10 * id.index, 1 + 0.1 * update));
+            }
+            static_cast<void>(pairs.update());
+        }
+        ASSERT_EQ(pairs.lastCost().grid.resting, resting.size());
+        if (change % 2 == 1) {
+            for (const ProxyId id : mobile) {
+                grid.move(id, cube(10 * id.index));
+            }
+            grid.expectQueries(1'000'000);
+        }
+        std::map<ProxyId, int> offered;
+        CallEach collector{[&](ProxyId found, float) {
+            for (std::size_t i = 0; i < resting.size() && offered.empty(); ++i) {
+                if (change / 2 == 0) {
+                    grid.move(resting[i], cube(10 * static_cast<double>(i) + 1));
+                } else if (change / 2 == 1) {
+                    grid.setGroups(resting[i], {2, 1});
+                } else {
+                    sweeps.set(resting[i], {1, 0, 0});
+                }
+            }
+            ++offered[found];
+        }};
+        grid.visit(SphereRegion<float>({0, 0, 0}, 1e9F), collector);
+        for (const ProxyId id : resting) {
+            EXPECT_GE(offered[id], 1);
+        }
+        for (const ProxyId id : mobile) {
+            EXPECT_EQ(offered[id], 1) << "has not been changed";
+        }
+        static_cast<void>(pairs.update());
+        EXPECT_EQ(pairs.validate(), "");
+    }
+}
+
 TEST(GridCallbacks, MayAskWithinAQuery) {
     // 4 x 4 x 4 unit cubes: each finds itself and those that touch it, (2 + 3 + 3 + 2) cubed.
     Population<float> block;
