@@ -169,20 +169,28 @@ void askAgainAboutFew(PairState<Scalar>& pairs, std::span<const ProxyId> ids, Pa
     }
 }
 
-// What is not known yet is of one that has changed.
+// What is not known yet is of one that has changed. Those that rest, and have moved within their slack, are in the
+// list of changes.
 template <class Scalar, class IsNamed>
 void askAgainAboutMany(PairState<Scalar>& pairs, PairFilter filter, const IsNamed& isNamed) {
     const Population<Scalar>& proxies = pairs.proxies;
     constexpr std::size_t kPart = PairState<Scalar>::kPart;
+    const auto askIfChanged = [&](std::uint32_t proxyIndex) {
+        if (!proxies.changedNow(proxyIndex) || !proxies.isAlive(proxyIndex)) {
+            return;
+        }
+        findNewCandidates(pairs, proxyIndex, [&](std::uint32_t other) {
+            const bool isFoundByOther = other < proxyIndex && proxies.changedNow(other);
+            return (isNamed(proxyIndex) || isNamed(other)) && !isFoundByOther;
+        });
+        askInParts(pairs, filter, kPart);
+    };
     if (pairs.store.cost.changed > 0) {
         listStrays(pairs);
-        for (const std::uint32_t proxyIndex : proxies.mobile) {
-            if (proxies.changedNow(proxyIndex) && proxies.isAlive(proxyIndex)) {
-                findNewCandidates(pairs, proxyIndex, [&](std::uint32_t other) {
-                    const bool isFoundByOther = other < proxyIndex && proxies.changedNow(other);
-                    return (isNamed(proxyIndex) || isNamed(other)) && !isFoundByOther;
-                });
-                askInParts(pairs, filter, kPart);
+        std::ranges::for_each(proxies.mobile, askIfChanged);
+        for (const std::uint32_t proxyIndex : proxies.waiting) {
+            if (proxies.rests(proxyIndex)) {
+                askIfChanged(proxyIndex);
             }
         }
     }

@@ -354,6 +354,35 @@ TYPED_TEST(Settled, AreCollectedAfterTheyWereWokenAndSettleAgain) {
     }
 }
 
+// Among themselves, and with what is mobile.
+TYPED_TEST(Settled, ThatHaveMovedAreFilteredAgainBetweenUpdates) {
+    Grid<TypeParam> grid({.slack = 0.5});
+    Pairs<TypeParam> pairs(grid);
+    const auto placed = [](std::size_t i, double dx = 0) {
+        return boxAround<TypeParam>({1.2 * static_cast<double>(i) + dx, 0, 0}, {0.5, 0.5, 0.5});
+    };
+    std::vector<ProxyId> ids;
+    for (std::size_t i = 0; i < 100; ++i) {
+        ids.push_back(grid.add(placed(i)));
+    }
+    for (int update = 0; update < 60; ++update) {
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            grid.move(ids[i], placed(i, update % 2 == 0 ? 0.01 : 0));
+        }
+        static_cast<void>(pairs.update());
+    }
+    ASSERT_EQ(pairs.lastCost().grid.resting, ids.size());
+    ASSERT_EQ(pairs.count(), 0U);
+    const ProxyId mobile = grid.add(placed(100, -0.1));
+    grid.move(ids[99], placed(99, 0.2));
+    grid.move(ids[50], placed(50, 0.3));
+    const PairChanges changes = pairs.refilterAll(acceptAllPairs);
+    const std::vector<ProxyPair> expected{makePair(ids[50], ids[51]), makePair(ids[99], mobile)};
+    EXPECT_TRUE(std::ranges::equal(changes.born, expected));
+    EXPECT_TRUE(pairs.update().born.empty());
+    EXPECT_EQ(pairs.validate(), "");
+}
+
 // What they needed while they were mobile is given back.
 TYPED_TEST(Settled, TakeLessMemoryAfterALongWhile) {
     constexpr std::size_t kCount = 3000;
