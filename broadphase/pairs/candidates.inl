@@ -134,7 +134,7 @@ void listIfNew(PairState<Scalar>& pairs, PairKey key) {
 // Lists those that sweep by a box of their own which is not within the one that the grid finds.
 template <class Scalar>
 void listStrays(PairState<Scalar>& pairs) {
-    std::vector<std::uint32_t>& strays = pairs.scratch.strays;
+    std::vector<std::uint32_t>& strays = pairs.scratch.entryOf;
     strays.clear();
     if (pairs.sweeping == nullptr) {
         return;
@@ -174,7 +174,7 @@ void findNewCandidates(PairState<Scalar>& pairs, std::uint32_t proxyIndex,
             add(other);
         }
     }
-    for (const std::uint32_t other : pairs.scratch.strays) {
+    for (const std::uint32_t other : pairs.scratch.entryOf) {
         if (!overlaps(box, proxies.records[other].box)) {  // or it has been found
             add(other);
         }

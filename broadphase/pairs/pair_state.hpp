@@ -90,17 +90,17 @@ template <class Scalar>
 struct SearchScratch {
     PairList selected;
     PairParts parts;
-    std::vector<std::uint32_t> entryOf;  // of places in Population::mobile, in the mobile table
+    // In update(), entries in the mobile table, by place in Population::mobile; between updates, proxies that
+    // listStrays() has found.
+    std::vector<std::uint32_t> entryOf;
     std::vector<std::uint32_t> searchedEntries;  // of a table
     std::vector<std::uint32_t> searchedIndices;  // proxies of these, or of some
-    std::vector<std::uint32_t> strays;           // proxies: see listStrays()
     BoxColumns<Scalar> bounds;                   // of what is looked for in a table
     std::vector<char> isNamed;                   // by index
 
     [[nodiscard]] std::size_t memoryBytes() const noexcept {
         return selected.memoryBytes() + parts.memoryBytes() + bounds.memoryBytes() +
-               (entryOf.capacity() + searchedEntries.capacity() + searchedIndices.capacity() +
-                strays.capacity()) *
+               (entryOf.capacity() + searchedEntries.capacity() + searchedIndices.capacity()) *
                    sizeof(std::uint32_t) +
                isNamed.capacity();
     }
