@@ -13,6 +13,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <stdexcept>
 #include <vector>
 
 namespace hashphase::test {
@@ -29,6 +30,12 @@ struct NotedAlgorithm : btCollisionAlgorithm {
             act(uids);
         }
     }
+    /// To the pair; `acts` must outlive it.
+    static void giveTo(btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
+                       std::vector<Uids>& list, const Act& acts) {
+        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
+        pair.m_algorithm = new (memory) NotedAlgorithm(uidsOf(pair), list, acts);
+    }
     void processCollision(const btCollisionObjectWrapper*, const btCollisionObjectWrapper*,
                           const btDispatcherInfo&, btManifoldResult*) override {}
     btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
@@ -39,6 +46,15 @@ struct NotedAlgorithm : btCollisionAlgorithm {
     Uids uids;
     std::vector<Uids>& freed;
     const Act& act;
+};
+
+/// Frees an algorithm, and throws.
+struct ThrowingDispatcher : btCollisionDispatcher {
+    using btCollisionDispatcher::btCollisionDispatcher;
+    void freeCollisionAlgorithm(void* memory) override {
+        btCollisionDispatcher::freeCollisionAlgorithm(memory);
+        throw std::runtime_error("freeCollisionAlgorithm");
+    }
 };
 
 struct CacheSide {
@@ -78,8 +94,7 @@ struct CacheSide {
     }
 
     void giveAlgorithm(btBroadphasePair& pair) {
-        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
-        pair.m_algorithm = new (memory) NotedAlgorithm(uidsOf(pair), freed, onFreed);
+        NotedAlgorithm::giveTo(pair, dispatcher, freed, onFreed);
     }
     /// To all pairs that have none, but for those of which `isLeft` is true.
     template <class IsLeft>

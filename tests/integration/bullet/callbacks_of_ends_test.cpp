@@ -249,8 +249,7 @@ TEST(CallbacksOfEnds, MayDestroyOthersWhilePairsLeaveACacheThatDefersRemoval) {
     btBroadphasePair* const parting =
         boxes.pairCache().findPair(boxes.proxies[0], boxes.proxies[1]);
     ASSERT_NE(parting, nullptr);
-    void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
-    parting->m_algorithm = new (memory) NotedAlgorithm(uidsOf(*parting), freed, destroyAnother);
+    NotedAlgorithm::giveTo(*parting, dispatcher, freed, destroyAnother);
     boxes.set(boxes.proxies[0], cubeAt(50));
     boxes.over->calculateOverlappingPairs(&dispatcher);
     EXPECT_EQ(freed, std::vector<Uids>{Uids(1, 2)});
@@ -282,8 +281,7 @@ TEST(CallbacksOfEnds, MayDestroyProxiesOfPairsThatAreYetToLeaveACacheThatDefersR
         btBroadphasePair* const pair =
             boxes.pairCache().findPair(boxes.proxies[0], boxes.proxies[other]);
         ASSERT_NE(pair, nullptr);
-        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
-        pair->m_algorithm = new (memory) NotedAlgorithm(uidsOf(*pair), freed, destroyTheOther);
+        NotedAlgorithm::giveTo(*pair, dispatcher, freed, destroyTheOther);
     }
     boxes.set(boxes.proxies[0], cubeAt(50));
     boxes.over->calculateOverlappingPairs(&dispatcher);
@@ -294,15 +292,8 @@ TEST(CallbacksOfEnds, MayDestroyProxiesOfPairsThatAreYetToLeaveACacheThatDefersR
 }
 
 TEST(CallbacksOfEnds, MayThrowWhilePairsLeaveACacheThatDefersRemoval) {
-    struct Throwing : btCollisionDispatcher {
-        using btCollisionDispatcher::btCollisionDispatcher;
-        void freeCollisionAlgorithm(void* memory) override {
-            btCollisionDispatcher::freeCollisionAlgorithm(memory);
-            throw std::runtime_error("freeCollisionAlgorithm");
-        }
-    };
     btDefaultCollisionConfiguration configuration;
-    Throwing dispatcher(&configuration);
+    ThrowingDispatcher dispatcher(&configuration);
     std::vector<Uids> freed;
     const NotedAlgorithm::Act nothing;
     AnyBoxes boxes(std::make_unique<btSortedOverlappingPairCache>());
@@ -314,8 +305,7 @@ TEST(CallbacksOfEnds, MayThrowWhilePairsLeaveACacheThatDefersRemoval) {
         btBroadphasePair* const pair =
             boxes.pairCache().findPair(boxes.proxies[0], boxes.proxies[other]);
         ASSERT_NE(pair, nullptr);
-        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
-        pair->m_algorithm = new (memory) NotedAlgorithm(uidsOf(*pair), freed, nothing);
+        NotedAlgorithm::giveTo(*pair, dispatcher, freed, nothing);
     }
     boxes.set(boxes.proxies[0], cubeAt(50));
     EXPECT_THROW(boxes.over->calculateOverlappingPairs(&dispatcher), std::runtime_error);
@@ -347,8 +337,7 @@ TEST(CallbacksOfEnds, MayDestroyOthersWhileAShapeChangesInACacheThatDefersRemova
     };
     btBroadphasePairArray& pairs = boxes.pairCache().getOverlappingPairArray();
     for (int i = 0; i < pairs.size(); ++i) {
-        void* const memory = dispatcher.allocateCollisionAlgorithm(sizeof(NotedAlgorithm));
-        pairs[i].m_algorithm = new (memory) NotedAlgorithm(uidsOf(pairs[i]), freed, destroyAnother);
+        NotedAlgorithm::giveTo(pairs[i], dispatcher, freed, destroyAnother);
     }
     boxes.hash().shapeChanged(boxes.proxies[0], &dispatcher);
     // Three of the first proxy, and two more of the one that was destroyed.

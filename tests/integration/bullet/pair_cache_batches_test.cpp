@@ -148,18 +148,11 @@ TEST(PairCacheBatch, LetsBirthsTakeThePlacesOfDeathsAndMovesNothingElse) {
 }
 
 TEST(PairCacheBatch, IsWholeWhereTheDispatcherThrows) {
-    struct Throwing : btCollisionDispatcher {
-        using btCollisionDispatcher::btCollisionDispatcher;
-        void freeCollisionAlgorithm(void* memory) override {
-            btCollisionDispatcher::freeCollisionAlgorithm(memory);
-            throw std::runtime_error("freeCollisionAlgorithm");
-        }
-    };
     CacheSide side;
     side.addBand();
     side.giveAlgorithms();
     const std::size_t count = side.list().size();
-    Throwing throwing(&side.configuration);
+    ThrowingDispatcher throwing(&side.configuration);
     const std::array gone{side.proxy(3), side.proxy(4), side.proxy(5), side.proxy(6),
                           side.proxy(90)};
     EXPECT_THROW(side.cache.removeOverlappingPairsContainingProxies(gone, &throwing),
